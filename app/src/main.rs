@@ -1,0 +1,2 @@
+//! The `burnish` program.
+fn main() {}

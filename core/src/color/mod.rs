@@ -1,0 +1,6 @@
+//! color
+
+use crate::leaf::Leaf;
+
+/// The WGSL twins of this folder.
+pub static LEAVES: &[&Leaf] = &[];

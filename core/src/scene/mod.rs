@@ -1,0 +1,223 @@
+//! A scene as every renderer sees it: flat, validated, in metres, radians and linear Rec.709.
+
+pub mod gallery;
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec2, Vec3, Vec4};
+
+use crate::material::Material;
+
+/// Everything that a picture is made from.
+///
+/// Indices between the lists are in range; importers and the gallery guarantee it through [`Scene::validate`].
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Name for people, usually the file's stem.
+    pub name: String,
+    /// Triangle meshes, one per primitive of the source.
+    pub meshes: Vec<Mesh>,
+    /// Placed meshes.
+    pub instances: Vec<Instance>,
+    /// Materials; never empty when there is an instance.
+    pub materials: Vec<Material>,
+    /// Decoded images, shared by the textures of the materials.
+    pub images: Vec<Arc<Image>>,
+    /// Punctual lights.
+    pub lights: Vec<Light>,
+    /// Cameras of the source.
+    pub cameras: Vec<Camera>,
+    /// Light from infinitely far away; `None` lets the caller choose.
+    pub environment: Option<Arc<Environment>>,
+}
+
+/// Indexed triangles in local space. Attribute lists are as long as `positions`, or empty where absent.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Name for people.
+    pub name: String,
+    /// Metres.
+    pub positions: Vec<Vec3>,
+    /// Unit normals; never empty after import.
+    pub normals: Vec<Vec3>,
+    /// Unit tangents with the sign of the bitangent in w (`bitangent = w * cross(normal, tangent)`); never empty after import.
+    pub tangents: Vec<Vec4>,
+    /// Two texture coordinate sets, origin at the image's top left.
+    pub uvs: [Vec<Vec2>; 2],
+    /// Linear colour factors, straight alpha.
+    pub colors: Vec<Vec4>,
+    /// Three per triangle, counter-clockwise from the front.
+    pub indices: Vec<u32>,
+}
+
+/// A mesh in the world.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Name for people, the node's.
+    pub name: String,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+    /// Any invertible affine transform; a negative determinant flips the winding.
+    pub world_from_local: Affine3A,
+}
+
+/// Pixels as the file stored them, without colour conversion. Row 0 is the top.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Name for people and messages.
+    pub name: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// RGBA.
+    pub texels: Texels,
+}
+
+/// RGBA texels, `4 * width * height` numbers.
+#[derive(Clone, Debug)]
+pub enum Texels {
+    /// 8 bits a channel.
+    Unorm8(Vec<u8>),
+    /// 16 bits a channel.
+    Unorm16(Vec<u16>),
+}
+
+/// A punctual light (KHR_lights_punctual).
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// Name for people.
+    pub name: String,
+    /// World position in metres; unused by directional lights.
+    pub position: Vec3,
+    /// Unit direction in which the light shines; unused by point lights.
+    pub direction: Vec3,
+    /// Linear Rec.709 intensity: cd (point, spot) or lx (directional) times colour. One nit is one unit of radiance.
+    pub intensity: Vec3,
+    /// Distance in metres at which the light is cut off smoothly; infinite when absent.
+    pub range: f32,
+    /// What kind of light.
+    pub kind: LightKind,
+}
+
+/// The kinds of [`Light`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightKind {
+    /// Shines in all directions.
+    Point,
+    /// A cone; half angles in radians, `0 <= inner < outer <= pi/2`.
+    Spot {
+        /// Full strength inside.
+        inner_angle: f32,
+        /// Dark outside.
+        outer_angle: f32,
+    },
+    /// Parallel light from infinitely far away.
+    Directional,
+}
+
+/// A view of the scene: looks along local -z with +y up, as in glTF.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// Name for people.
+    pub name: String,
+    /// Rotation and translation only.
+    pub world_from_view: Affine3A,
+    /// How depth becomes size.
+    pub projection: Projection,
+}
+
+/// The projection of a [`Camera`]. Far planes are ignored: depth is reversed and infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Vertical field of view in radians; near plane in metres.
+    Perspective {
+        /// Full vertical angle.
+        yfov: f32,
+        /// Distance of the near plane.
+        near: f32,
+    },
+    /// Half heights in metres.
+    Orthographic {
+        /// Half the height of the view.
+        ymag: f32,
+        /// Distance of the near plane.
+        near: f32,
+        /// Distance of the far plane.
+        far: f32,
+    },
+}
+
+/// An equirectangular map of radiance from infinitely far away.
+///
+/// Direction `(x, y, z)` is seen at `u = 1/2 + atan2(x, -z) / 2pi`, `v = acos(y) / pi` (v = 0 is up, the centre of the
+/// image is -z), after the direction was turned by `-rotation` about +y.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// Name for people.
+    pub name: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Linear Rec.709 radiance, row 0 at the top; finite and not negative.
+    pub texels: Vec<Vec3>,
+    /// Radians counter-clockwise about +y.
+    pub rotation: f32,
+    /// Factor on the radiance.
+    pub strength: f32,
+}
+
+/// An axis-aligned box, empty when `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least corner.
+    pub min: Vec3,
+    /// Greatest corner.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box that contains nothing.
+    pub const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The smallest box around this one and `point`.
+    pub fn including(self, point: Vec3) -> Bounds {
+        Bounds { min: self.min.min(point), max: self.max.max(point) }
+    }
+
+    /// True when no point is inside.
+    pub fn is_empty(self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    /// Middle of the box; the origin when empty.
+    pub fn center(self) -> Vec3 {
+        if self.is_empty() { Vec3::ZERO } else { 0.5 * (self.min + self.max) }
+    }
+
+    /// Half the diagonal; 0 when empty.
+    pub fn radius(self) -> f32 {
+        if self.is_empty() { 0.0 } else { 0.5 * (self.max - self.min).length() }
+    }
+}
+
+impl Scene {
+    /// Box around all instances, in world space.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for instance in &self.instances {
+            for &p in &self.meshes[instance.mesh].positions {
+                bounds = bounds.including(instance.world_from_local.transform_point3(p));
+            }
+        }
+        bounds
+    }
+
+    /// Triangles of all instances.
+    pub fn triangle_count(&self) -> usize {
+        self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3).sum()
+    }
+}

@@ -136,6 +136,49 @@ pub fn find<'a>(specs: &'a [ParamSpec], key: &str) -> Result<&'a ParamSpec, Para
     })
 }
 
+/// Values for a list of settings, defaults where nothing was set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    specs: &'static [ParamSpec],
+    values: Vec<ParamValue>,
+}
+
+impl Settings {
+    /// All defaults.
+    pub fn new(specs: &'static [ParamSpec]) -> Settings {
+        Settings { specs, values: specs.iter().map(ParamSpec::default).collect() }
+    }
+
+    /// Sets one from text such as a command line's `--set key=value`.
+    pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
+        let spec = find(self.specs, key)?;
+        let index = self.specs.iter().position(|s| s.key == spec.key).unwrap_or(0);
+        self.values[index] = spec.parse(text)?;
+        Ok(())
+    }
+
+    /// The settings with their values, in the order of declaration.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> {
+        self.specs.iter().zip(self.values.iter().copied())
+    }
+
+    /// Value of a declared setting; `None` for a key that is not in the list.
+    pub fn get(&self, key: &str) -> Option<ParamValue> {
+        self.iter().find(|(spec, _)| spec.key == key).map(|(_, value)| value)
+    }
+
+    /// The word of a [`ParamKind::Choice`], or the number as text.
+    pub fn text(&self, key: &str) -> Option<String> {
+        let (spec, value) = self.iter().find(|(spec, _)| spec.key == key)?;
+        Some(match (spec.kind, value) {
+            (ParamKind::Choice { options, .. }, ParamValue::Choice(index)) => options.get(index)?.to_string(),
+            (_, ParamValue::Integer(v)) => v.to_string(),
+            (_, ParamValue::Number(v)) => v.to_string(),
+            (_, ParamValue::Choice(index)) => index.to_string(),
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

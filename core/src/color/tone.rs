@@ -94,8 +94,8 @@ pub fn tone_map(kind: ToneMap, linear: Vec3) -> Vec3 {
 
 /// The light that the screen gives off, linear Rec.709 in [0, 1], before encoding.
 pub fn tone_display_linear(kind: ToneMap, linear: Vec3) -> Vec3 {
-    // `max` first: it turns a NaN into 0.
-    let admit = |v: f32| v.max(0.0).min(MAX_LINEAR);
+    // Not `clamp`, which would let NaN pass.
+    let admit = |v: f32| if v > 0.0 { v.min(MAX_LINEAR) } else { 0.0 };
     let x = Vec3::new(admit(linear.x), admit(linear.y), admit(linear.z));
     let shown = match kind {
         ToneMap::None => x,
@@ -142,7 +142,7 @@ const AGX_SHOULDER: f32 = 69.862_79;
 /// grey stays grey.
 const AGX_INSET: Mat3 = Mat3::from_cols(
     Vec3::new(0.842_364_16, 0.042_329_81, 0.042_377_68),
-    Vec3::new(0.078_422_9, 0.878_501_14, 0.078_437_35),
+    Vec3::new(0.078_422_9, 0.878_501_1, 0.078_437_35),
     Vec3::new(0.079_212_94, 0.079_169_06, 0.879_184_97),
 );
 /// The inverse of the inset.
@@ -152,7 +152,7 @@ const AGX_OUTSET: Mat3 = Mat3::from_cols(
     Vec3::new(-0.099_025_01, -0.098_956_45, 1.151_018_7),
 );
 
-/// Sobotka 2022, AgX, with its own sigmoid rather than a polynomial fit. Domain: x >= 0.
+/// Sobotka, AgX, with its own sigmoid rather than a polynomial fit of it. Domain: x >= 0.
 ///
 /// The curve gives code values for a screen of exponent 2.2; they are turned into light here.
 fn tone_agx(x: Vec3) -> Vec3 {
@@ -183,7 +183,7 @@ const ACES_OUTPUT: Mat3 = Mat3::from_cols(
     Vec3::new(-0.073_67, -0.006_05, 1.076_02),
 );
 
-/// Hill 2017, fit of the ACES 1.0 reference rendering and sRGB output transforms. Domain: x >= 0.
+/// Hill (BakingLab), a fit of the ACES 1.0 reference rendering and sRGB output transforms. Domain: x >= 0.
 ///
 /// As published, without the factor 1/0.6 that some programs put before it: middle grey 0.18 becomes 0.106.
 fn tone_aces(x: Vec3) -> Vec3 {

@@ -1,12 +1,15 @@
 //! A scene as every renderer sees it: flat, validated, in metres, radians and linear Rec.709.
 
 pub mod gallery;
+mod validate;
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::material::Material;
+
+pub use validate::Fault;
 
 /// Everything that a picture is made from.
 ///

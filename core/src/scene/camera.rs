@@ -17,8 +17,8 @@ const NEAR: f32 = 1e-3;
 impl Camera {
     /// A perspective camera at `eye` (metres) that sees `target` in its middle and +y upwards; `yfov` is the full
     /// vertical angle in radians. Where `target` is no direction from `eye` it looks along -z; straight up or down,
-    /// the top of the picture is -z or +z.
-    pub fn look_at(eye: Vec3, target: Vec3, yfov: f32) -> Camera {
+    /// the top of the picture is +z or -z.
+    pub fn look_at(name: &str, eye: Vec3, target: Vec3, yfov: f32) -> Camera {
         let offset = target - eye;
         let distance = if offset.is_finite() { offset.length() } else { 0.0 };
         let forward = offset.try_normalize().unwrap_or(Vec3::NEG_Z);
@@ -27,7 +27,7 @@ impl Camera {
         let rotation = Mat3::from_cols(right, right.cross(forward), -forward);
         let near = if distance > 0.0 { NEAR * distance } else { NEAR };
         Camera {
-            name: "look-at".into(),
+            name: name.into(),
             world_from_view: Affine3A::from_mat3_translation(rotation, eye),
             projection: Projection::Perspective { yfov, near },
         }
@@ -55,9 +55,7 @@ impl Camera {
             })
             // A thin box seen end on must not reach the camera.
             .fold(1.5 * radius, f32::max);
-        let mut camera = Camera::look_at(center + FRAME_MARGIN * distance * back, center, FRAME_YFOV);
-        camera.name = "frame-all".into();
-        camera
+        Camera::look_at("frame all", center + FRAME_MARGIN * distance * back, center, FRAME_YFOV)
     }
 }
 
@@ -77,7 +75,7 @@ mod tests {
     fn look_at_puts_the_target_in_the_middle_and_up_above_it() {
         let target = Vec3::new(1.0, 2.0, -3.0);
         for eye in [Vec3::new(4.0, 3.0, 5.0), Vec3::new(1.0, 9.0, -3.0), Vec3::new(1.0, -9.0, -3.0), Vec3::ZERO] {
-            let camera = Camera::look_at(eye, target, 0.7);
+            let camera = Camera::look_at("c", eye, target, 0.7);
             assert!((project(&camera, 1.5, target) - Vec3::new(0.0, 0.0, eye.distance(target))).length() < 1e-5);
             let m = camera.world_from_view.matrix3;
             assert!((m.determinant() - 1.0).abs() < 1e-5, "a rotation from {eye}: {m}");
@@ -90,7 +88,7 @@ mod tests {
     #[test]
     fn look_at_without_a_direction_is_still_a_rotation() {
         for target in [Vec3::ONE, Vec3::NAN, Vec3::INFINITY] {
-            let camera = Camera::look_at(Vec3::ONE, target, 0.7);
+            let camera = Camera::look_at("c", Vec3::ONE, target, 0.7);
             assert!((camera.world_from_view.matrix3.determinant() - 1.0).abs() < 1e-5, "{target}");
         }
     }

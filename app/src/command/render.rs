@@ -1,0 +1,160 @@
+//! `burnish render`: a scene to a picture.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::file::{write_exr, write_png};
+use burnish_core::lighting::classical;
+use burnish_core::material::{Material, Reflectance, preset};
+use burnish_core::param::Settings;
+use burnish_core::picture::Picture;
+use burnish_core::scene::{Camera, Scene, gallery};
+use burnish_render::{Gpu, Renderer, View};
+use glam::UVec2;
+
+use crate::failure::{Exit, Failure};
+use crate::source::{self, Opened, SceneArg};
+use crate::value::{self, CameraChoice, MetalChoice, PictureFile};
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArg,
+    /// Picture to write: .png (8 bits, after the display transform) or .exr (linear radiance)
+    #[arg(long, value_name = "FILE", value_parser = value::picture_file)]
+    out: PictureFile,
+    /// Environment map, equirectangular .hdr or .exr [default: the scene's own, else the built-in studio]
+    #[arg(long, value_name = "FILE")]
+    env: Option<PathBuf>,
+    /// Metal for a material, by name or #index; for all without a slot; repeatable, see `burnish presets`
+    #[arg(long, value_name = "PRESET[:SLOT]", value_parser = value::metal)]
+    metal: Vec<MetalChoice>,
+    /// Roughness factor, 0 to 1, of the materials that got a --metal; of all without one
+    #[arg(long, value_name = "R", value_parser = value::number(0.0, 1.0))]
+    roughness: Option<f32>,
+    /// Anisotropy strength, 0 to 1, of the same materials
+    #[arg(long, value_name = "A", value_parser = value::number(0.0, 1.0))]
+    anisotropy: Option<f32>,
+    /// Setting of the lighting method, such as samples=64; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
+    set: Vec<(String, String)>,
+    /// Pixels of the picture
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = value::size)]
+    size: UVec2,
+    /// Camera of the scene by name or #index, or ex,ey,ez,tx,ty,tz,fov: eye and target in metres, vertical angle in
+    /// degrees [default: all in view; the first camera of a gallery scene]
+    #[arg(long, value_name = "CAMERA", value_parser = value::camera, allow_hyphen_values = true)]
+    camera: Option<CameraChoice>,
+    /// Display transform of a .png: none, neutral, agx or aces [default: neutral]
+    #[arg(long, value_parser = str::parse::<ToneMap>)]
+    tone: Option<ToneMap>,
+    /// Exposure of a .png in stops: 1 doubles the light [default: 0]
+    #[arg(long, value_name = "EV", value_parser = value::number(-32.0, 32.0), allow_negative_numbers = true)]
+    exposure: Option<f32>,
+    /// Jittered frames that are averaged, 1 to 4096
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    spp_jitter: u32,
+}
+
+pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
+    if matches!(args.out, PictureFile::Exr(_)) && (args.tone.is_some() || args.exposure.is_some()) {
+        return Err(Failure::usage(
+            "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
+        ));
+    }
+    let settings = settings(&args.set)?;
+    let Opened { mut scene, mut notices, from_gallery } = args.scene.open()?;
+    if let Some(file) = &args.env {
+        let (environment, more) = source::environment(file)?;
+        scene.environment = Some(environment);
+        notices.extend(more);
+    } else if scene.environment.is_none() {
+        scene.environment = Some(Arc::new(gallery::studio()));
+    }
+    notices.extend(set_materials(&mut scene, &args, &settings)?);
+    let camera = camera(&scene, &args, from_gallery)?;
+    for notice in &notices {
+        writeln!(err, "burnish: notice: {notice}")?;
+    }
+
+    let start = Instant::now();
+    let gpu = Gpu::new().map_err(Failure::resources)?;
+    let view = View { size: args.size, camera, settings, jitter_frames: args.spp_jitter };
+    let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    let picture = renderer.render(&view).map_err(Failure::resources)?;
+    let file = save(&picture, &args)?;
+    let (UVec2 { x, y }, frames) = (args.size, args.spp_jitter);
+    let (adapter, secs) = (&gpu.report().name, start.elapsed().as_secs_f32());
+    writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", file.display())?;
+    Ok(Exit::Ok)
+}
+
+fn settings(list: &[(String, String)]) -> Result<Settings, Failure> {
+    let mut settings = Settings::new(classical::PARAMS);
+    for (key, text) in list {
+        settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
+    }
+    Ok(settings)
+}
+
+/// Applies `--metal`, `--roughness` and `--anisotropy`; returns what the user should know.
+fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<Vec<String>, Failure> {
+    let mut notices = Vec::new();
+    let mut changed = vec![false; scene.materials.len()];
+    for choice in &args.metal {
+        let preset = preset::find(&choice.preset).map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?;
+        let fresnel = Arc::new(preset.fresnel(&settings.text("fresnel").unwrap_or_default()));
+        let slots = match &choice.slot {
+            Some(slot) => slot
+                .among("material", scene.materials.iter().map(|m| m.name.as_str()))
+                .map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?,
+            None => (0..scene.materials.len()).collect(),
+        };
+        for slot in slots {
+            let material = &mut scene.materials[slot];
+            material.reflectance = Reflectance::Preset { id: preset.id.clone(), fresnel: fresnel.clone() };
+            if std::mem::take(&mut material.unlit) {
+                notices.push(format!("material `{}` was unlit and is lit now to show its metal", material.name));
+            }
+            changed[slot] = true;
+        }
+    }
+    let all = args.metal.is_empty();
+    let targets = scene.materials.iter_mut().zip(&changed).filter(|(_, changed)| all || **changed);
+    for (Material { roughness, anisotropy, .. }, _) in targets {
+        *roughness = args.roughness.unwrap_or(*roughness);
+        *anisotropy = args.anisotropy.unwrap_or(*anisotropy);
+    }
+    Ok(notices)
+}
+
+fn camera(scene: &Scene, args: &Args, from_gallery: bool) -> Result<Camera, Failure> {
+    match &args.camera {
+        Some(CameraChoice::LookAt { eye, target, yfov }) => Ok(Camera::look_at("look at", *eye, *target, *yfov)),
+        Some(CameraChoice::Of(pick)) => {
+            let found = pick
+                .among("camera", scene.cameras.iter().map(|c| c.name.as_str()))
+                .map_err(|e| Failure::usage(format!("--camera: {e}; or give ex,ey,ez,tx,ty,tz,fov")))?;
+            Ok(scene.cameras[found[0]].clone())
+        }
+        None => Ok(match scene.cameras.first() {
+            Some(camera) if from_gallery => camera.clone(),
+            _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
+        }),
+    }
+}
+
+/// Writes the picture and returns where.
+fn save<'a>(picture: &Picture, args: &'a Args) -> Result<&'a PathBuf, Failure> {
+    let (file, result) = match &args.out {
+        PictureFile::Png(file) => {
+            (file, write_png(file, picture, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0)))
+        }
+        PictureFile::Exr(file) => (file, write_exr(file, picture)),
+    };
+    result.map_err(|e| Failure::output(file, e))?;
+    Ok(file)
+}

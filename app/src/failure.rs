@@ -45,12 +45,6 @@ impl Failure {
         Failure { exit: Exit::Input, messages: faults.to_string().lines().map(message).collect() }
     }
 
-    /// A file that cannot be written.
-    pub fn output(file: &Path, reason: impl Display) -> Failure {
-        let file = file.display();
-        Failure::resources(format!("{file}: cannot be written: {reason}; choose an existing folder with room in --out"))
-    }
-
     /// The message of the argument parser without its usage block.
     pub fn arguments(error: &clap::Error) -> Failure {
         let text = error.render().to_string();

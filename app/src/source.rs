@@ -36,8 +36,7 @@ impl SceneArg {
             return Ok(Opened { scene, notices: Vec::new(), from_gallery: true });
         }
         let path = Path::new(&self.scene);
-        let imported =
-            import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
+        let imported = import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
         let notices = imported.notices.iter().map(ToString::to_string).collect();
         Ok(Opened { scene: imported.scene, notices, from_gallery: false })
     }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use burnish_core::file::PictureFormat;
 use glam::{UVec2, Vec3};
 
 /// Largest side of a picture: what every adapter grants a texture.
@@ -119,24 +120,10 @@ pub fn camera(text: &str) -> Result<CameraChoice, String> {
     Ok(CameraChoice::LookAt { eye, target, yfov: fov.to_radians() })
 }
 
-/// What a picture is saved as.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PictureFile {
-    /// 8 bits a channel, after the display transform.
-    Png(PathBuf),
-    /// Linear radiance in floating point.
-    Exr(PathBuf),
-}
-
-/// Reads a [`PictureFile`] by the ending of its name.
-pub fn picture_file(text: &str) -> Result<PictureFile, String> {
+/// A path whose ending names a format that pictures are written in.
+pub fn picture_path(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
-        Some("png") => Ok(PictureFile::Png(path)),
-        Some("exr") => Ok(PictureFile::Exr(path)),
-        _ => Err("pictures are written as .png or .exr".into()),
-    }
+    PictureFormat::of(&path).map(|_| path).map_err(|e| format!("{}; {}", e.reason, e.remedy))
 }
 
 #[cfg(test)]

@@ -158,7 +158,13 @@ impl Info {
         writeln!(out, "cameras      {}", self.cameras.len())?;
         for (i, camera) in self.cameras.iter().enumerate() {
             let angle = camera.vertical_angle.map_or("orthographic".into(), |a| format!("{} degrees", spaced([a])));
-            writeln!(out, "  #{i} {}: at {} m, looks along {}, {angle}", camera.name, spaced(camera.eye), spaced(camera.direction))?;
+            writeln!(
+                out,
+                "  #{i} {}: at {} m, looks along {}, {angle}",
+                camera.name,
+                spaced(camera.eye),
+                spaced(camera.direction)
+            )?;
         }
         writeln!(out, "images       {}", self.images.len())?;
         for (i, image) in self.images.iter().enumerate() {

@@ -6,26 +6,25 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::color::tone::ToneMap;
-use burnish_core::file::{write_exr, write_png};
+use burnish_core::file::{PictureFormat, write_picture};
 use burnish_core::lighting::classical;
 use burnish_core::material::{Material, Reflectance, preset};
 use burnish_core::param::Settings;
-use burnish_core::picture::Picture;
 use burnish_core::scene::{Camera, Scene, gallery};
 use burnish_render::{Gpu, Renderer, View};
 use glam::UVec2;
 
 use crate::failure::{Exit, Failure};
 use crate::source::{self, Opened, SceneArg};
-use crate::value::{self, CameraChoice, MetalChoice, PictureFile};
+use crate::value::{self, CameraChoice, MetalChoice};
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArg,
     /// Picture to write: .png (8 bits, after the display transform) or .exr (linear radiance)
-    #[arg(long, value_name = "FILE", value_parser = value::picture_file)]
-    out: PictureFile,
+    #[arg(long, value_name = "FILE", value_parser = value::picture_path)]
+    out: PathBuf,
     /// Environment map, equirectangular .hdr or .exr [default: the scene's own, else the built-in studio]
     #[arg(long, value_name = "FILE")]
     env: Option<PathBuf>,
@@ -60,7 +59,8 @@ pub struct Args {
 }
 
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    if matches!(args.out, PictureFile::Exr(_)) && (args.tone.is_some() || args.exposure.is_some()) {
+    let shows = PictureFormat::of(&args.out) == Ok(PictureFormat::Png);
+    if !shows && (args.tone.is_some() || args.exposure.is_some()) {
         return Err(Failure::usage(
             "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
         ));
@@ -85,10 +85,11 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let view = View { size: args.size, camera, settings, jitter_frames: args.spp_jitter };
     let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
     let picture = renderer.render(&view).map_err(Failure::resources)?;
-    let file = save(&picture, &args)?;
+    write_picture(&picture, &args.out, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0))
+        .map_err(Failure::resources)?;
     let (UVec2 { x, y }, frames) = (args.size, args.spp_jitter);
     let (adapter, secs) = (&gpu.report().name, start.elapsed().as_secs_f32());
-    writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", file.display())?;
+    writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", args.out.display())?;
     Ok(Exit::Ok)
 }
 
@@ -105,7 +106,8 @@ fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<
     let mut notices = Vec::new();
     let mut changed = vec![false; scene.materials.len()];
     for choice in &args.metal {
-        let preset = preset::find(&choice.preset).map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?;
+        let preset =
+            preset::find(&choice.preset).map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?;
         let fresnel = Arc::new(preset.fresnel(&settings.text("fresnel").unwrap_or_default()));
         let slots = match &choice.slot {
             Some(slot) => slot
@@ -145,16 +147,4 @@ fn camera(scene: &Scene, args: &Args, from_gallery: bool) -> Result<Camera, Fail
             _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
         }),
     }
-}
-
-/// Writes the picture and returns where.
-fn save<'a>(picture: &Picture, args: &'a Args) -> Result<&'a PathBuf, Failure> {
-    let (file, result) = match &args.out {
-        PictureFile::Png(file) => {
-            (file, write_png(file, picture, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0)))
-        }
-        PictureFile::Exr(file) => (file, write_exr(file, picture)),
-    };
-    result.map_err(|e| Failure::output(file, e))?;
-    Ok(file)
 }

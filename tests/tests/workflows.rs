@@ -233,8 +233,8 @@ fn a_difference_over_the_threshold() {
     let reference = ramp();
     let mut brighter = ramp();
     brighter.texels.iter_mut().for_each(|t| *t = (1.5 * *t).with_w(1.0));
-    write_exr(&brighter, &a).expect("a writable folder");
-    write_exr(&reference, &b).expect("a writable folder");
+    write_exr(&reference, &a).expect("a writable folder");
+    write_exr(&brighter, &b).expect("a writable folder");
 
     let result = burnish(&["compare", text(&a), text(&b), "--json"]).json();
     let relmse = result["relmse"].as_f64().expect("a number");
@@ -265,7 +265,7 @@ fn incomparable_pictures() {
     write_exr(&ramp(), &exr).expect("a writable folder");
     write_png(&ramp(), &png, ToneMap::None, 0.0).expect("a writable folder");
     write_exr(&Picture::filled(3, 2, Vec4::ONE), &small).expect("a writable folder");
-    burnish(&["compare", text(&small), text(&exr)]).failed(INPUT, &["small.exr", "3x2", "64x48"]);
+    burnish(&["compare", text(&small), text(&exr)]).failed(INPUT, &["small.exr", "3 x 2", "64 x 48"]);
     burnish(&["compare", text(&png), text(&exr)]).failed(INPUT, &["a.png", "a.exr"]);
 }
 

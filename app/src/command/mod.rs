@@ -34,7 +34,7 @@ impl Command {
             Command::Render(args) => render::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
-            Command::Compare(args) => compare::run(args, out),
+            Command::Compare(args) => compare::run(args, out, err),
             Command::Doctor => doctor::run(out),
         }
     }

@@ -25,3 +25,13 @@ struct PresetInfo<'a> {
     f0_unclamped: [f32; 3],
     source: String,
 }
+
+pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let list: Vec<PresetInfo> = preset::library().iter().map(|p| PresetInfo { id: &p.id, name: &p.name, f0: [0.0;3], f0_unclamped: [0.0;3], source: String::new() }).collect();
+    if args.json {
+        write_json(out, &list)?;
+        return Ok(Exit::Ok);
+    }
+    for p in &list { writeln!(out, "{}", spaced(p.f0))?; }
+    Ok(Exit::Ok)
+}

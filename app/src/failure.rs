@@ -50,7 +50,8 @@ impl Failure {
         let text = error.render().to_string();
         let text = text.strip_prefix("error: ").unwrap_or(&text);
         let end = ["Usage:", "For more information"].iter().filter_map(|mark| text.find(mark)).min();
-        Failure::usage(format!("{}; see `burnish help`", text[..end.unwrap_or(text.len())].trim()))
+        let reason = one_line(&text[..end.unwrap_or(text.len())]).replace(" tip:", ";");
+        Failure::usage(format!("{reason}; see `burnish help`"))
     }
 }
 

@@ -18,7 +18,7 @@ use failure::{Exit, Failure};
 
 /// A workbench for the look of metals.
 #[derive(Parser)]
-#[command(name = "burnish", version, no_binary_name = true, after_help = EXIT_CODES)]
+#[command(name = "burnish", version, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -50,7 +50,7 @@ fn parse_and_run(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let cli = match Cli::try_parse_from(args) {
+    let cli = match Cli::try_parse_from(std::iter::once("burnish".into()).chain(args)) {
         Ok(cli) => cli,
         Err(error) if error.use_stderr() => return Err(Failure::arguments(&error)),
         Err(help_or_version) => {

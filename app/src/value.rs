@@ -73,16 +73,20 @@ impl Pick {
 /// `PRESET[:slot]` of `--metal`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetalChoice {
-    /// Id of a preset.
+    /// Id of a preset, or its file.
     pub preset: String,
     /// Which material; all when absent.
     pub slot: Option<Pick>,
 }
 
-/// Reads a [`MetalChoice`]; a slot's name may hold colons, a preset's id does not.
+/// Reads a [`MetalChoice`]; the name of a slot may hold colons, and so may the path of a file.
 pub fn metal(text: &str) -> Result<MetalChoice, String> {
-    let (preset, slot) = match text.split_once(':') {
-        Some((preset, slot)) => (preset, Some(Pick::parse(slot))),
+    let end_of_file = text.to_ascii_lowercase().find(".json").map_or(0, |dot| dot + ".json".len());
+    let (preset, slot) = match text[end_of_file..].find(':') {
+        Some(colon) => {
+            let (preset, slot) = text.split_at(end_of_file + colon);
+            (preset, Some(Pick::parse(&slot[1..])))
+        }
         None => (text, None),
     };
     if preset.is_empty() {
@@ -165,6 +169,8 @@ mod tests {
         assert_eq!(metal("Au"), Ok(MetalChoice { preset: "Au".into(), slot: None }));
         let slot = Some(Pick::Name("a:b".into()));
         assert_eq!(metal("Au:a:b"), Ok(MetalChoice { preset: "Au".into(), slot }));
+        let own = MetalChoice { preset: "C:\\own.json".into(), slot: Some(Pick::Index(2)) };
+        assert_eq!(metal("C:\\own.json:#2"), Ok(own));
         assert!(metal(":shell").is_err());
     }
 }

@@ -66,7 +66,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let against = || format!("{} against {}", args.picture.display(), args.reference.display());
     let refuse = |reason: String| Failure::input(&args.picture, format!("{}: {reason}", against()));
     if kind != reference_kind {
-        return Err(refuse("one holds what a screen shows, the other radiance; compare .png with .png or .exr with .exr".into()));
+        return Err(refuse(
+            "one holds what a screen shows, the other radiance; compare .png with .png or .exr with .exr".into(),
+        ));
     }
     let seen = flip(&reference, &picture, 0.0, PIXELS_PER_DEGREE).map_err(|e| refuse(e.to_string()))?;
     let relmse = relmse(&reference, &picture).map_err(|e| refuse(e.to_string()))?;
@@ -87,7 +89,12 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     };
     match args.threshold {
         Some(threshold) if error > f64::from(threshold) => {
-            writeln!(err, "burnish: {}: {} is {error:.6}, over the threshold {threshold}", against(), args.metric.id())?;
+            writeln!(
+                err,
+                "burnish: {}: {} is {error:.6}, over the threshold {threshold}",
+                against(),
+                args.metric.id()
+            )?;
             Ok(Exit::Difference)
         }
         _ => Ok(Exit::Ok),

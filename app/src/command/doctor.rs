@@ -23,7 +23,7 @@ pub fn run(out: &mut dyn Write) -> Result<Exit, Failure> {
     if cfg!(target_os = "linux") {
         writeln!(out, "\nlibraries")?;
         write_found(out, "Vulkan loader", &libraries("libvulkan.so.1"))?;
-        write_found(out, "Vulkan drivers", &vulkan_drivers())?;
+        write_found(out, "Vulkan driver", &vulkan_drivers())?;
     }
     if adapters.iter().any(|a| a.accepted.is_ok()) {
         return Ok(Exit::Ok);

@@ -47,7 +47,25 @@ fn write_json(out: &mut dyn Write, value: &impl Serialize) -> Result<(), Failure
     Ok(())
 }
 
-/// Numbers for people, with spaces between.
+/// Numbers for people with spaces between, rounded to five digits of the largest.
 fn spaced(numbers: impl IntoIterator<Item = f32>) -> String {
-    numbers.into_iter().map(|v| format!("{}", (v * 1e4).round() / 1e4)).collect::<Vec<_>>().join(" ")
+    let numbers: Vec<f64> = numbers.into_iter().map(f64::from).collect();
+    let largest = numbers.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    let decimals = if largest > 0.0 { (4.0 - largest.log10().floor()).clamp(0.0, 40.0) } else { 0.0 };
+    // Through text and back: Display then leaves out trailing zeros.
+    let rounded = numbers.iter().map(|v| format!("{v:.*}", decimals as usize).parse().unwrap_or(*v));
+    rounded.map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spaced;
+
+    #[test]
+    fn numbers_are_rounded_by_the_largest_of_them() {
+        assert_eq!(spaced([-0.258_312_3, 1e-9, -0.9]), "-0.25831 0 -0.9");
+        assert_eq!(spaced([1.5e-6, 0.0]), "0.0000015 0");
+        assert_eq!(spaced([123_456.7]), "123457");
+        assert_eq!(spaced([0.0, -0.0]), "0 0");
+    }
 }

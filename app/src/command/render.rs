@@ -1,15 +1,16 @@
 //! `burnish render`: a scene to a picture.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::file::{PictureFormat, write_picture};
 use burnish_core::lighting::classical;
-use burnish_core::material::{Material, Reflectance, preset};
-use burnish_core::param::Settings;
+use burnish_core::material::preset::{self, PresetError};
+use burnish_core::material::{Material, Reflectance};
+use burnish_core::param::{ParamSpec, Settings};
 use burnish_core::scene::{Camera, Scene, gallery};
 use burnish_render::{Gpu, Renderer, View};
 use glam::UVec2;
@@ -19,38 +20,38 @@ use crate::source::{self, Opened, SceneArg};
 use crate::value::{self, CameraChoice, MetalChoice};
 
 #[derive(clap::Args)]
+#[command(after_help = settings_help())]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArg,
-    /// Picture to write: .png (8 bits, after the display transform) or .exr (linear radiance)
+    /// Picture to write: .png (what a screen shows) or .exr (linear radiance)
     #[arg(long, value_name = "FILE", value_parser = value::picture_path)]
     out: PathBuf,
-    /// Environment map, equirectangular .hdr or .exr [default: the scene's own, else the built-in studio]
+    /// Environment map, .hdr or .exr [default: the scene's own, else a studio]
     #[arg(long, value_name = "FILE")]
     env: Option<PathBuf>,
-    /// Metal for a material, by name or #index; for all without a slot; repeatable, see `burnish presets`
+    /// Metal for the material SLOT, a name or #index; for all without one; repeatable
     #[arg(long, value_name = "PRESET[:SLOT]", value_parser = value::metal)]
     metal: Vec<MetalChoice>,
-    /// Roughness factor, 0 to 1, of the materials that got a --metal; of all without one
+    /// Roughness factor, 0 to 1, of the materials that got a --metal; without --metal of all
     #[arg(long, value_name = "R", value_parser = value::number(0.0, 1.0))]
     roughness: Option<f32>,
     /// Anisotropy strength, 0 to 1, of the same materials
     #[arg(long, value_name = "A", value_parser = value::number(0.0, 1.0))]
     anisotropy: Option<f32>,
-    /// Setting of the lighting method, such as samples=64; repeatable
+    /// Setting of the lighting, see below; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
     set: Vec<(String, String)>,
     /// Pixels of the picture
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = value::size)]
     size: UVec2,
-    /// Camera of the scene by name or #index, or ex,ey,ez,tx,ty,tz,fov: eye and target in metres, vertical angle in
-    /// degrees [default: all in view; the first camera of a gallery scene]
-    #[arg(long, value_name = "CAMERA", value_parser = value::camera, allow_hyphen_values = true)]
+    /// Eye and target in metres and the vertical angle in degrees [default: all in view; a gallery scene's first]
+    #[arg(long, value_name = "NAME|#INDEX|EX,EY,EZ,TX,TY,TZ,FOV", value_parser = value::camera, allow_hyphen_values = true)]
     camera: Option<CameraChoice>,
     /// Display transform of a .png: none, neutral, agx or aces [default: neutral]
     #[arg(long, value_parser = str::parse::<ToneMap>)]
     tone: Option<ToneMap>,
-    /// Exposure of a .png in stops: 1 doubles the light [default: 0]
+    /// Exposure of a .png in stops, -32 to 32 [default: 0]
     #[arg(long, value_name = "EV", value_parser = value::number(-32.0, 32.0), allow_negative_numbers = true)]
     exposure: Option<f32>,
     /// Jittered frames that are averaged, 1 to 4096
@@ -64,6 +65,13 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         return Err(Failure::usage(
             "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
         ));
+    }
+    // Before the work, not after it.
+    if let Some(folder) = args.out.parent().filter(|f| !f.as_os_str().is_empty() && !f.is_dir()) {
+        let (file, folder) = (args.out.display(), folder.display());
+        return Err(Failure::resources(format!(
+            "{file}: there is no folder {folder}; create it or choose another --out"
+        )));
     }
     let settings = settings(&args.set)?;
     let Opened { mut scene, mut notices, from_gallery } = args.scene.open()?;
@@ -93,6 +101,15 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     Ok(Exit::Ok)
 }
 
+/// The settings that `--set` takes, from their declaration.
+fn settings_help() -> String {
+    let line = |spec: &ParamSpec| {
+        let value = Settings::new(classical::PARAMS).text(spec.key).unwrap_or_default();
+        format!("  {}: {} [default: {value}]\n      {}\n", spec.key, spec.kind, spec.help)
+    };
+    format!("Settings:\n{}", classical::PARAMS.iter().map(line).collect::<String>())
+}
+
 fn settings(list: &[(String, String)]) -> Result<Settings, Failure> {
     let mut settings = Settings::new(classical::PARAMS);
     for (key, text) in list {
@@ -105,14 +122,14 @@ fn settings(list: &[(String, String)]) -> Result<Settings, Failure> {
 fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<Vec<String>, Failure> {
     let mut notices = Vec::new();
     let mut changed = vec![false; scene.materials.len()];
-    for choice in &args.metal {
-        let preset =
-            preset::find(&choice.preset).map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?;
-        let fresnel = Arc::new(preset.fresnel(&settings.text("fresnel").unwrap_or_default()));
-        let slots = match &choice.slot {
+    for MetalChoice { preset, slot } in &args.metal {
+        let preset = preset::find(preset).map_err(|e| metal_failure(preset, e))?;
+        let form = settings.text("fresnel").unwrap_or_default();
+        let fresnel = Arc::new(preset.fresnel(&form).map_err(|e| metal_failure(&preset.id, e))?);
+        let slots = match slot {
             Some(slot) => slot
                 .among("material", scene.materials.iter().map(|m| m.name.as_str()))
-                .map_err(|e| Failure::usage(format!("--metal {}: {e}", choice.preset)))?,
+                .map_err(|e| Failure::usage(format!("--metal {}: {e}", preset.id)))?,
             None => (0..scene.materials.len()).collect(),
         };
         for slot in slots {
@@ -131,6 +148,16 @@ fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<
         *anisotropy = args.anisotropy.unwrap_or(*anisotropy);
     }
     Ok(notices)
+}
+
+/// A preset's file may be at fault, or the name that was given.
+fn metal_failure(preset: &str, error: PresetError) -> Failure {
+    match error {
+        PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } => {
+            Failure::input(Path::new(preset), error)
+        }
+        PresetError::Unknown { .. } | PresetError::Form(_) => Failure::usage(format!("--metal {preset}: {error}")),
+    }
 }
 
 fn camera(scene: &Scene, args: &Args, from_gallery: bool) -> Result<Camera, Failure> {

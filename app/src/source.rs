@@ -1,7 +1,7 @@
 //! SCENE arguments: a model file, or `gallery:NAME[?key=value&...]`.
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use burnish_core::import::{self, ImportOptions};
@@ -47,7 +47,7 @@ fn gallery_name(scene: &OsStr) -> Option<&str> {
 }
 
 /// Reads the file of `--env`, with notices.
-pub fn environment(path: &PathBuf) -> Result<(Arc<Environment>, Vec<String>), Failure> {
+pub fn environment(path: &Path) -> Result<(Arc<Environment>, Vec<String>), Failure> {
     let (environment, notices) = import::load_environment(path).map_err(|e| Failure::input(path, e))?;
     Ok((Arc::new(environment), notices.iter().map(ToString::to_string).collect()))
 }

@@ -54,9 +54,8 @@ pub fn luminance(linear: Vec3) -> f32 {
 
 /// sRGB encoding of linear light, both in [0, 1]; values outside are clamped (IEC 61966-2-1).
 pub fn srgb_from_linear(x: Vec3) -> Vec3 {
-    // `max` first: it turns a NaN into 0.
     let encode = |v: f32| {
-        let v = v.max(0.0).min(1.0);
+        let v = unit(v);
         if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
     };
     Vec3::new(encode(x.x), encode(x.y), encode(x.z))
@@ -65,10 +64,15 @@ pub fn srgb_from_linear(x: Vec3) -> Vec3 {
 /// Linear light of an sRGB encoding, both in [0, 1]; values outside are clamped (IEC 61966-2-1).
 pub fn linear_from_srgb(x: Vec3) -> Vec3 {
     let decode = |v: f32| {
-        let v = v.max(0.0).min(1.0);
+        let v = unit(v);
         if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
     };
     Vec3::new(decode(x.x), decode(x.y), decode(x.z))
+}
+
+/// Clamps to [0, 1]; unlike `clamp`, it takes NaN to 0.
+fn unit(v: f32) -> f32 {
+    if v > 0.0 { v.min(1.0) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -63,13 +63,7 @@ impl Spectrum {
 
     /// Value at a wavelength in nm.
     pub fn at(&self, wavelength_nm: f64) -> f64 {
-        let after = self.wavelength_nm.partition_point(|&w| w <= wavelength_nm);
-        let before = after.saturating_sub(1);
-        let (Some(&w0), Some(&v0)) = (self.wavelength_nm.get(before), self.values.get(before)) else { return 0.0 };
-        match (self.wavelength_nm.get(after), self.values.get(after)) {
-            (Some(&w1), Some(&v1)) if wavelength_nm > w0 => v0 + (v1 - v0) * (wavelength_nm - w0) / (w1 - w0),
-            _ => v0,
-        }
+        interpolate(&self.wavelength_nm, &self.values, wavelength_nm)
     }
 
     /// First and last wavelength, nm.
@@ -88,6 +82,17 @@ impl Spectrum {
     /// The values at [`Spectrum::wavelengths_nm`].
     pub fn values(&self) -> &[f64] {
         &self.values
+    }
+}
+
+/// Value at `x` of a table with increasing `xs`: linear in between, constant beyond the ends, 0 where there is no table.
+pub fn interpolate(xs: &[f64], values: &[f64], x: f64) -> f64 {
+    let after = xs.partition_point(|&entry| entry <= x);
+    let before = after.saturating_sub(1);
+    let (Some(&x0), Some(&v0)) = (xs.get(before), values.get(before)) else { return 0.0 };
+    match (xs.get(after), values.get(after)) {
+        (Some(&x1), Some(&v1)) if x > x0 => v0 + (v1 - v0) * (x - x0) / (x1 - x0),
+        _ => v0,
     }
 }
 

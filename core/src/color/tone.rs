@@ -94,8 +94,8 @@ pub fn tone_map(kind: ToneMap, linear: Vec3) -> Vec3 {
 
 /// The light that the screen gives off, linear Rec.709 in [0, 1], before encoding.
 pub fn tone_display_linear(kind: ToneMap, linear: Vec3) -> Vec3 {
-    // `max` first: it turns a NaN into 0.
-    let admit = |v: f32| v.max(0.0).min(MAX_LINEAR);
+    // Not `clamp`, which would let NaN pass.
+    let admit = |v: f32| if v > 0.0 { v.min(MAX_LINEAR) } else { 0.0 };
     let x = Vec3::new(admit(linear.x), admit(linear.y), admit(linear.z));
     let shown = match kind {
         ToneMap::None => x,
@@ -142,7 +142,7 @@ const AGX_SHOULDER: f32 = 69.862_79;
 /// grey stays grey.
 const AGX_INSET: Mat3 = Mat3::from_cols(
     Vec3::new(0.842_364_16, 0.042_329_81, 0.042_377_68),
-    Vec3::new(0.078_422_9, 0.878_501_14, 0.078_437_35),
+    Vec3::new(0.078_422_9, 0.878_501_1, 0.078_437_35),
     Vec3::new(0.079_212_94, 0.079_169_06, 0.879_184_97),
 );
 /// The inverse of the inset.

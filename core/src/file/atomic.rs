@@ -114,7 +114,7 @@ mod tests {
         let missing = write_atomic(&folder.join("none/a.txt"), b"x").unwrap_err().to_string();
         assert!(missing.contains("a.txt") && missing.contains("create the folder"), "{missing}");
         // A name that the file system refuses fails at the rename, after the temporary file was written.
-        let long = write_atomic(&folder.join(&"x".repeat(300)), b"x").unwrap_err().to_string();
+        let long = write_atomic(&folder.join("x".repeat(300)), b"x").unwrap_err().to_string();
         assert!(long.contains("cannot be written"), "{long}");
         assert!(write_atomic(&folder.join("."), b"x").unwrap_err().to_string().contains("not a regular file"));
         assert!(folder.names().is_empty(), "{:?}", folder.names());

@@ -89,7 +89,7 @@ pub fn read_picture(path: &Path) -> Result<(Picture, Encoding), FileError> {
 
 /// Refuses a header whose picture is empty or over the budget.
 pub(super) fn check_size(width: u64, height: u64) -> Result<(u32, u32), String> {
-    let pixels = width.checked_mul(height).unwrap_or(u64::MAX);
+    let pixels = width.saturating_mul(height);
     if pixels == 0 {
         return Err(format!("is {width} x {height} pixels: empty"));
     }

@@ -10,4 +10,5 @@ pub mod layered;
 use crate::leaf::Leaf;
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[];
+pub static LEAVES: &[&Leaf] =
+    &[&fresnel::WGSL, &ggx::WGSL, &lambert::WGSL, &dielectric::WGSL, &coat::WGSL, &layered::WGSL];

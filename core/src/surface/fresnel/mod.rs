@@ -2,6 +2,16 @@
 
 use glam::Vec3;
 
+use crate::leaf::Leaf;
+
+/// The WGSL twin.
+pub static WGSL: Leaf = Leaf {
+    name: "fresnel",
+    source: include_str!("fresnel.wgsl"),
+    needs: &[],
+    externs: "fn fresnel_table(table: u32, entry: u32) -> vec3f { return vec3f(f32(entry) / 255.0); }",
+};
+
 /// Entries of a spectral table.
 pub const TABLE_SIZE: usize = 256;
 

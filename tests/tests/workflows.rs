@@ -46,6 +46,7 @@ fn with_an_adapter() -> Vec<Trial> {
         trial("doctor finds the adapter", &[Need::Gpu], doctor_finds_the_adapter),
         trial("render writes a png of the asked size that shows the scene", &[Need::Gpu], render_writes_a_png),
         trial("render writes an exr that exposure leaves alone", &[Need::Gpu], render_writes_an_exr),
+        trial("every example of the README runs", &[Need::Gpu], readme_examples_run),
         trial("a metal goes to the slot that is named", &[Need::Gpu], a_metal_on_a_slot),
     ]
 }
@@ -359,4 +360,44 @@ fn an_unwritable_picture() {
     let file = scratch_folder("unwritable").join("absent/w.png");
     render(&file, &[]).failed(RESOURCES, &["w.png", "absent", "create it"]);
     assert!(!file.exists());
+}
+
+/// A 4 by 2 environment in the Radiance format, one grey for all directions.
+fn grey_environment() -> Vec<u8> {
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    // Mantissas of 128 / 256 times 2^(129 - 128).
+    bytes.extend([128, 128, 128, 129].repeat(8));
+    bytes
+}
+
+/// The lines that start with `./dev run` and a command, with files in a folder of the test and small pictures.
+fn readme_examples_run() {
+    let folder = scratch_folder("readme");
+    fs::create_dir_all(folder.join("docs/images")).expect("a writable folder");
+    fs::write(folder.join("model.glb"), TRIANGLE).expect("a writable folder");
+    fs::write(folder.join("studio.hdr"), grey_environment()).expect("a writable folder");
+    let readme = fs::read_to_string(repository().join("README.md")).expect("the README");
+    let examples: Vec<&str> = readme.lines().filter_map(|line| line.strip_prefix("    ./dev run ")).collect();
+    let mut run = 0;
+    for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
+        let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
+        let is_file = |arg: &str| [".png", ".exr", ".glb", ".hdr"].iter().any(|ending| arg.ends_with(ending));
+        for arg in args.iter_mut().filter(|arg| is_file(arg)) {
+            *arg = text(&folder.join(&*arg)).into();
+        }
+        if args[0] == "render" {
+            match args.iter().position(|arg| arg == "--size") {
+                Some(option) => args[option + 1] = "48x27".into(),
+                None => args.extend(["--size".into(), "48x27".into()]),
+            }
+            args.extend(["--spp-jitter".into(), "1".into()]);
+        }
+        let outcome = burnish(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(outcome.exit, OK, "{example}: {}", outcome.err);
+        run += 1;
+    }
+    assert!(run >= 8, "only {run} examples were found");
+    for picture in ["docs/images/workbench.png", "copper.png", "workbench.exr", "brass.png", "diff.png"] {
+        assert!(folder.join(picture).is_file(), "{picture}");
+    }
 }

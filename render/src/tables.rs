@@ -6,7 +6,8 @@ use burnish_core::lighting::classical;
 use burnish_core::material::Reflectance;
 use burnish_core::scene::Scene;
 use burnish_core::surface::fresnel::Fresnel;
-use burnish_core::surface::ggx::{self, Masking};
+use burnish_core::surface::ggx::Masking;
+use burnish_core::surface::ggx::albedo::AlbedoTable;
 use glam::Vec3;
 
 /// Where a material's metal finds its curve, as [`crate::layout::types::MaterialData`] stores it.
@@ -32,7 +33,7 @@ pub struct Tables {
 impl Tables {
     /// Builds the tables of all materials; presets that share a curve share its tables.
     pub fn new(scene: &Scene, masking: Masking) -> Tables {
-        let mut floats = vec![0.0; 8192];
+        let mut floats = AlbedoTable::get().flat().to_vec();
         let mut known: Vec<(Arc<Fresnel>, Metal)> = Vec::new();
         let mut metals = Vec::with_capacity(scene.materials.len());
         for material in &scene.materials {

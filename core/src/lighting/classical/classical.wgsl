@@ -57,18 +57,19 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32) -> vec3f 
 }
 
 // Directional albedo of single scattering for the surface's metal; table 0 stands for a curve f0 + (1 - f0)(1 - x)^5.
-fn classical_metal_albedo(s: Surface, table: u32, mu: f32, alpha: f32) -> vec3f {
-    let e = ggx_albedo(mu, alpha, s.masking);
+fn classical_metal_albedo(s: Surface, table: u32, wo: vec3f) -> vec3f {
+    let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+    let width = dielectric_width(s.alpha);
     if table == 0u {
-        return e * mix(s.fresnel.f0, vec3f(1.0), ggx_albedo_schlick_ratio(mu, alpha, s.masking));
+        return e * mix(s.fresnel.f0, vec3f(1.0), ggx_albedo_schlick_ratio(wo.z, width, s.masking));
     }
-    let x = sqrt(clamp(mu, 0.0, 1.0));
-    let y = ggx_albedo_y(alpha);
+    let x = ggx_albedo_axis(sqrt(clamp(wo.z, 0.0, 1.0)), GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(width);
     let size = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
     let mean = vec3f(
-        ggx_albedo_grid(table, x, y),
-        ggx_albedo_grid(table + size, x, y),
-        ggx_albedo_grid(table + 2u * size, x, y),
+        ggx_albedo_plane(table, x, y, GGX_ALBEDO_MU),
+        ggx_albedo_plane(table + size, x, y, GGX_ALBEDO_MU),
+        ggx_albedo_plane(table + 2u * size, x, y, GGX_ALBEDO_MU),
     );
     return e * mean;
 }
@@ -103,14 +104,19 @@ fn classical_bent_normal(base: Frame, wo_world: vec3f, alpha: vec2f) -> vec3f {
 
 // Reflection by one lookup: prefiltered radiance times albedo, the split sum.
 fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f32) -> vec3f {
-    let alpha = ggx_alpha_toward(wo, s.alpha);
     let wo_world = frame_to_world(base, wo);
     let n = classical_bent_normal(base, wo_world, s.alpha);
     let direction = reflect(-wo_world, n);
     let roughness = sqrt(sqrt(s.alpha.x * s.alpha.y));
-    let e = ggx_albedo(wo.z, alpha, s.masking);
-    let schlick = mix(s.dielectric_f0, vec3f(s.dielectric_f90), ggx_albedo_schlick_ratio(wo.z, alpha, s.masking));
-    let albedo = mix(e * schlick, classical_metal_albedo(s, table, wo.z, alpha), s.metallic);
+    var albedo = vec3f(0.0);
+    if s.metallic > 0.0 {
+        albedo += s.metallic * classical_metal_albedo(s, table, wo);
+    }
+    if s.metallic < 1.0 {
+        let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+        let ratio = ggx_albedo_schlick_ratio(wo.z, dielectric_width(s.alpha), s.masking);
+        albedo += (1.0 - s.metallic) * e * mix(s.dielectric_f0, vec3f(s.dielectric_f90), ratio);
+    }
     return albedo * classical_prefiltered(direction, classical_level(roughness, levels));
 }
 
@@ -141,7 +147,7 @@ fn classical_environment(
     samples: u32, rotation: vec2f, levels: vec2f,
 ) -> vec3f {
     let wo = classical_facing(frame_to_local(base, to_viewer));
-    let alpha = ggx_alpha_toward(wo, s.alpha);
+    let width = dielectric_width(s.alpha);
     let irradiance = occlusion * classical_irradiance(base.n) * INV_PI;
 
     var reflected: vec3f;
@@ -150,13 +156,13 @@ fn classical_environment(
     } else {
         reflected = classical_sampled(s, base, wo, samples, rotation, levels.x);
     }
-    var value = classical_occlusion(wo.z, alpha, occlusion) * reflected;
+    var value = classical_occlusion(wo.z, width, occlusion) * reflected;
     if s.metallic > 0.0 && s.multiple_scattering {
-        value += s.metallic * classical_multiple_albedo(s, wo.z, alpha) * irradiance;
+        value += s.metallic * classical_multiple_albedo(s, wo) * irradiance;
     }
     if s.metallic < 1.0 {
         let strongest = max(s.dielectric_f0.x, max(s.dielectric_f0.y, s.dielectric_f0.z));
-        let left = 1.0 - dielectric_albedo(wo.z, alpha, strongest, s.dielectric_f90, s.masking);
+        let left = 1.0 - dielectric_albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
         value += (1.0 - s.metallic) * left * s.base_color * irradiance;
     }
     if s.coat <= 0.0 {
@@ -176,7 +182,7 @@ fn classical_environment(
         coat_light = classical_sampled(top, coat, coat_wo, samples, rotation, levels.x);
     }
     // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
-    let passed = coat_transmission(coat_wo.z, s.coat_alpha, s.coat, s.masking);
+    let passed = coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
     return value * passed * passed + s.coat * classical_occlusion(coat_wo.z, s.coat_alpha, occlusion) * coat_light;
 }
 
@@ -186,10 +192,10 @@ fn classical_facing(wo: vec3f) -> vec3f {
 }
 
 // Albedo of light that bounced more than once between microfacets.
-fn classical_multiple_albedo(s: Surface, mu: f32, alpha: f32) -> vec3f {
-    let mean = ggx_loss_mean(ggx_alpha_mean(s.alpha), s.masking);
+fn classical_multiple_albedo(s: Surface, wo: vec3f) -> vec3f {
+    let mean = ggx_loss_mean(s.alpha, s.masking);
     let f = s.fresnel_mean;
-    return f * f * (1.0 - mean) / (1.0 - f * mean) * ggx_loss(mu, alpha, s.masking);
+    return f * f * (1.0 - mean) / (1.0 - f * mean) * ggx_loss(wo, s.alpha, s.masking);
 }
 
 // Share of a reflection that an ambient occlusion leaves: none is lost by a mirror, all of it by a matte surface.

@@ -6,7 +6,8 @@ use super::level;
 use crate::math::frame::Frame;
 use crate::math::sampling;
 use crate::surface::fresnel;
-use crate::surface::ggx::{self, ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
+use crate::surface::ggx;
+use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, albedo_schlick_ratio, loss, loss_mean};
 use crate::surface::layered::Surface;
 use crate::surface::{coat, dielectric};
 
@@ -92,19 +93,19 @@ pub fn environment(
     lobes: Lobes,
 ) -> Vec3 {
     let wo = facing(base.to_local(to_viewer));
-    let alpha = ggx::alpha_toward(wo, s.alpha);
+    let width = dielectric::width(s.alpha);
     let irradiance = occlusion * maps.irradiance(base.n) * std::f32::consts::FRAC_1_PI;
     let reflected = match lobes.samples {
         0 => split_sum(maps, s, table, base, wo),
         _ => sampled(maps, s, base, wo, lobes),
     };
-    let mut value = reflection_occlusion(wo.z, alpha, occlusion) * reflected;
+    let mut value = reflection_occlusion(wo.z, width, occlusion) * reflected;
     if s.metallic > 0.0 && s.multiple_scattering {
-        value += s.metallic * multiple_albedo(s, wo.z, alpha) * irradiance;
+        value += s.metallic * multiple_albedo(s, wo) * irradiance;
     }
     if s.metallic < 1.0 {
         let strongest = s.dielectric_f0.max_element();
-        let left = 1.0 - dielectric::albedo(wo.z, alpha, strongest, s.dielectric_f90, s.masking);
+        let left = 1.0 - dielectric::albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
         value += (1.0 - s.metallic) * left * s.base_color * irradiance;
     }
     if s.coat <= 0.0 {
@@ -115,7 +116,7 @@ pub fn environment(
         alpha: Vec2::splat(s.coat_alpha),
         dielectric_f0: Vec3::splat(coat::F0),
         dielectric_f90: 1.0,
-        ..s.clone()
+        ..*s
     };
     let coat_wo = facing(coat_frame.to_local(to_viewer));
     let coat_light = match lobes.samples {
@@ -123,7 +124,7 @@ pub fn environment(
         _ => sampled(maps, &top, coat_frame, coat_wo, lobes),
     };
     // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
-    let passed = coat::transmission(coat_wo.z, s.coat_alpha, s.coat, s.masking);
+    let passed = coat::transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
     value * passed * passed + s.coat * reflection_occlusion(coat_wo.z, s.coat_alpha, occlusion) * coat_light
 }
 
@@ -133,17 +134,17 @@ fn facing(wo: Vec3) -> Vec3 {
 }
 
 fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame, wo: Vec3) -> Vec3 {
-    let alpha = ggx::alpha_toward(wo, s.alpha);
     let wo_world = base.to_world(wo);
     let n = bent_normal(base, wo_world, s.alpha);
     let direction = 2.0 * n.dot(wo_world) * n - wo_world;
     let roughness = (s.alpha.x * s.alpha.y).sqrt().sqrt();
-    let e = ggx::albedo(wo.z, alpha, s.masking);
-    let ratio = ggx::albedo_schlick_ratio(wo.z, alpha, s.masking);
+    let width = dielectric::width(s.alpha);
+    let e = 1.0 - loss(wo, s.alpha, s.masking);
+    let ratio = albedo_schlick_ratio(wo.z, width, s.masking);
     let schlick = s.dielectric_f0.lerp(Vec3::splat(s.dielectric_f90), ratio);
     let metal = match table {
         None => s.fresnel.f0().lerp(Vec3::ONE, ratio),
-        Some(table) => mean_fresnel(table, wo.z, alpha),
+        Some(table) => mean_fresnel(table, wo.z, width),
     };
     let albedo = e * schlick.lerp(metal, s.metallic);
     albedo * maps.prefiltered(direction, level(roughness, maps.prefiltered_levels()))
@@ -203,10 +204,10 @@ fn bent_normal(base: &Frame, wo_world: Vec3, alpha: Vec2) -> Vec3 {
 }
 
 /// Albedo of light that bounced more than once between microfacets.
-fn multiple_albedo(s: &Surface, mu: f32, alpha: f32) -> Vec3 {
-    let mean = ggx::loss_mean(ggx::alpha_mean(s.alpha), s.masking);
+fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
+    let mean = loss_mean(s.alpha, s.masking);
     let f = s.fresnel_mean;
-    f * f * (1.0 - mean) / (Vec3::ONE - f * mean) * ggx::loss(mu, alpha, s.masking)
+    f * f * (1.0 - mean) / (Vec3::ONE - f * mean) * loss(wo, s.alpha, s.masking)
 }
 
 /// Share of a reflection that an ambient occlusion leaves: a mirror loses little, a matte surface all of it.

@@ -13,7 +13,9 @@ use std::sync::LazyLock;
 use crate::leaf::Leaf;
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
 use crate::surface::fresnel::Fresnel;
-use crate::surface::ggx::{self, Masking};
+use crate::surface::ggx::Masking;
+use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
+use crate::surface::ggx::reflection::{CosineWeights, sample_curve};
 use crate::surface::layered;
 
 pub use evaluate::{Lobes, Maps, environment, footprint, prefilter};
@@ -111,16 +113,16 @@ pub fn prefilter_samples(level: u32) -> u32 {
 }
 
 /// Nodes of the cosine weights behind [`mean_fresnel_table`], per masking.
-static WEIGHTS: LazyLock<[Vec<ggx::CosineWeights>; 2]> = LazyLock::new(|| {
+static WEIGHTS: LazyLock<[Vec<CosineWeights>; 2]> = LazyLock::new(|| {
     let mut weights = [Vec::new(), Vec::new()];
-    for j in 0..ggx::ALBEDO_ALPHA {
-        for i in 0..ggx::ALBEDO_MU {
-            let x = f64::from(i) / f64::from(ggx::ALBEDO_MU - 1);
-            let y = f64::from(j) / f64::from(ggx::ALBEDO_ALPHA - 1);
-            let root_min = f64::from(ggx::ALBEDO_ROOT_MIN);
+    for j in 0..ALBEDO_ALPHA {
+        for i in 0..ALBEDO_MU {
+            let x = f64::from(i) / f64::from(ALBEDO_MU - 1);
+            let y = f64::from(j) / f64::from(ALBEDO_ALPHA - 1);
+            let root_min = f64::from(ALBEDO_ROOT_MIN);
             let alpha = (root_min + y * (1.0 - root_min)).powi(4);
             // The lowest node stands for grazing views, where the albedo itself is 0.
-            let [correlated, separable] = ggx::CosineWeights::new((x * x).max(1e-6), alpha);
+            let [correlated, separable] = CosineWeights::new((x * x).max(1e-6), alpha);
             weights[0].push(correlated);
             weights[1].push(separable);
         }
@@ -132,8 +134,8 @@ static WEIGHTS: LazyLock<[Vec<ggx::CosineWeights>; 2]> = LazyLock::new(|| {
 /// of `ALBEDO_ALPHA` rows of `ALBEDO_MU`, over the square root of the cosine and the fourth root of alpha as
 /// `ggx_albedo_schlick_ratio` lays them out. Multiplied by the albedo for F = 1 it is the directional albedo.
 pub fn mean_fresnel_table(fresnel: &Fresnel, masking: Masking) -> Vec<f32> {
-    let curve = ggx::sample_curve(|x| fresnel.eval(x));
-    let one = ggx::sample_curve(|_| glam::Vec3::ONE);
+    let curve = sample_curve(|x| fresnel.eval(x));
+    let one = sample_curve(|_| glam::Vec3::ONE);
     let weights = &WEIGHTS[masking as usize];
     let means: Vec<_> =
         weights.iter().map(|w| w.albedo(&curve) / w.albedo(&one).max(glam::Vec3::splat(1e-12))).collect();

@@ -9,7 +9,7 @@ fn coat_eval(wo: vec3f, wi: vec3f, alpha: f32, masking: u32) -> f32 {
     return half_vector.w * fresnel_schlick(vec3f(COAT_F0), 1.0, dot(wi, half_vector.xyz)).x;
 }
 
-// Share of the light that passes a coat of the given weight at cosine mu; applies once toward wo, once toward wi.
-fn coat_transmission(mu: f32, alpha: f32, coat: f32, masking: u32) -> f32 {
-    return 1.0 - coat * dielectric_albedo(mu, alpha, COAT_F0, 1.0, masking);
+// Share of the light that passes a coat of the given weight toward w; applies once toward wo, once toward wi.
+fn coat_transmission(w: vec3f, alpha: f32, coat: f32, masking: u32) -> f32 {
+    return 1.0 - coat * dielectric_albedo(w, vec2f(alpha), COAT_F0, 1.0, masking);
 }

@@ -28,7 +28,7 @@ pub const ALBEDO_STRIDE: u32 = ALBEDO_SCHLICK_MEAN + ALBEDO_ALPHA;
 /// `ALPHA_MIN^(1/4)`, where the alpha axis starts.
 pub const ALBEDO_ROOT_MIN: f32 = 0.177_827_94;
 /// How far the slopes across the view are narrowed by those along it; fitted, see [`toward`].
-pub const ALBEDO_ANISOTROPY: f32 = 0.45;
+pub const ALBEDO_ANISOTROPY: f32 = 0.42;
 
 /// The tables of both maskings in one flat array.
 #[derive(Debug)]

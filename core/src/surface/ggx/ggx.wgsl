@@ -17,7 +17,7 @@ const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA;
 // alpha_min^(1/4), where the alpha axis of the tables starts.
 const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
 // How far the slopes across the view are narrowed by those along it.
-const GGX_ALBEDO_ANISOTROPY: f32 = 0.45;
+const GGX_ALBEDO_ANISOTROPY: f32 = 0.42;
 
 fn ggx_clamp_alpha(alpha: vec2f) -> vec2f {
     return clamp(alpha, vec2f(GGX_ALPHA_MIN), vec2f(1.0));

@@ -40,8 +40,8 @@ fn layered_base(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
 fn layered_response(s: Surface, wo: vec3f, wi: vec3f, coat_wo: vec3f, coat_wi: vec3f) -> vec3f {
     var value = layered_base(s, wo, wi) * max(wi.z, 0.0);
     if s.coat > 0.0 {
-        let passed = coat_transmission(coat_wo.z, s.coat_alpha, s.coat, s.masking)
-            * coat_transmission(coat_wi.z, s.coat_alpha, s.coat, s.masking);
+        let passed = coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking)
+            * coat_transmission(coat_wi, s.coat_alpha, s.coat, s.masking);
         value = value * passed + s.coat * coat_eval(coat_wo, coat_wi, s.coat_alpha, s.masking) * max(coat_wi.z, 0.0);
     }
     return value;

@@ -62,6 +62,14 @@ fn a_png_that_was_read_is_written_again_with_the_same_bytes() {
 }
 
 #[test]
+fn the_content_of_a_file_counts_and_not_its_name() {
+    let folder = Folder::new();
+    write_png(&gradient(2, 2), &folder.join("a.png"), ToneMap::None, 0.0).unwrap();
+    std::fs::rename(folder.join("a.png"), folder.join("a.exr")).unwrap();
+    assert_eq!(read_picture(&folder.join("a.exr")).unwrap().1, Encoding::Display);
+}
+
+#[test]
 fn sixteen_bit_grey_is_read_with_all_its_levels() {
     let folder = Folder::new();
     let path = folder.join("grey.png");

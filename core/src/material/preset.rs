@@ -4,7 +4,6 @@
 //! here by spectral integration; nothing in a file is already a colour.
 
 mod check;
-mod conductor;
 mod library;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
@@ -19,8 +18,7 @@ use serde_json::{Map, Value};
 use crate::color::rgb;
 use crate::color::spectrum::interpolate;
 use crate::file::{FileError, read_bounded};
-use crate::surface::fresnel::{Fresnel, TABLE_SIZE};
-use conductor::exact;
+use crate::surface::fresnel::{Fresnel, TABLE_SIZE, exact};
 
 /// Names of the curves that [`Preset::fresnel`] makes.
 pub const FORMS: [&str; 3] = ["spectral", "rescaled", "schlick"];

@@ -152,7 +152,8 @@ impl Preset {
         exact(n, k, cos_theta)
     }
 
-    /// Exact reflectance as linear Rec.709 under D65, not clamped: saturated metals leave [0, 1] (the red of gold is 1.037).
+    /// Exact reflectance as linear Rec.709 under D65, not clamped: saturated metals leave [0, 1] (the red of gold is
+    /// 1.037).
     pub fn unclamped(&self, cos_theta: f64) -> DVec3 {
         rgb::integrate(|nm| self.reflectance(nm, cos_theta))
     }

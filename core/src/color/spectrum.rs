@@ -85,7 +85,8 @@ impl Spectrum {
     }
 }
 
-/// Value at `x` of a table with increasing `xs`: linear in between, constant beyond the ends, 0 where there is no table.
+/// Value at `x` of a table with increasing `xs`: linear in between, constant beyond the ends, 0 where there is no
+/// table.
 pub fn interpolate(xs: &[f64], values: &[f64], x: f64) -> f64 {
     let after = xs.partition_point(|&entry| entry <= x);
     let before = after.saturating_sub(1);

@@ -108,8 +108,8 @@ pub fn tone_display_linear(kind: ToneMap, linear: Vec3) -> Vec3 {
 
 /// Khronos 2024, PBR Neutral Tone Mapper Specification. Domain: x >= 0.
 ///
-/// Takes off the Fresnel reflection of a dielectric (0.04), keeps what lies below 0.8, and compresses the largest channel
-/// above by a hyperbola, mixing in white as it brightens.
+/// Takes off the Fresnel reflection of a dielectric (0.04), keeps what lies below 0.8, and compresses the largest
+/// channel above by a hyperbola, mixing in white as it brightens.
 fn tone_neutral(x: Vec3) -> Vec3 {
     const F90: f32 = 0.04;
     const START: f32 = 0.8 - F90;
@@ -161,7 +161,8 @@ fn tone_agx(x: Vec3) -> Vec3 {
     (AGX_OUTSET * curve).clamp(Vec3::ZERO, Vec3::ONE).powf(2.2)
 }
 
-/// Sigmoid over log2 of light, slope 2 through (pivot, 1/2): `1/2 + 2d (1 + s |d|^p)^(-1/p)`, d the distance to the pivot.
+/// Sigmoid over log2 of light, slope 2 through (pivot, 1/2): `1/2 + 2d (1 + s |d|^p)^(-1/p)`, d the distance to the
+/// pivot.
 fn agx_curve(x: f32) -> f32 {
     let (low, high) = AGX_STOPS;
     let stops = x.max(1e-10).log2() - AGX_LOG2_GREY;

@@ -42,8 +42,8 @@ pub fn read_bounded(path: &Path, max_bytes: u64) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
-/// Writes a file so that `path` holds the old bytes or all of the new ones, even if the power fails: a temporary file in
-/// the same folder, synced, renamed over `path`, folder synced. A link is followed, not replaced.
+/// Writes a file so that `path` holds the old bytes or all of the new ones, even if the power fails: a temporary file
+/// in the same folder, synced, renamed over `path`, folder synced. A link is followed, not replaced.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let unwritable = |e: io::Error| {
         let remedy = match e.kind() {

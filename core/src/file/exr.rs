@@ -66,8 +66,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Picture, String> {
         .all_attributes()
         .from_buffered(Cursor::new(bytes))
         .map_err(fault)?;
-    let picture = Picture { width, height, texels: image.layer_data.channel_data.pixels };
-    if picture.is_whole() { Ok(picture) } else { Err("is an OpenEXR with missing rows".into()) }
+    // Both choose the first layer that fits; were it not the same one, pixels would lie in the wrong rows.
+    if image.layer_data.size != Vec2(width as usize, height as usize) {
+        return Err("has layers of different sizes that cannot be told apart".into());
+    }
+    Ok(Picture { width, height, texels: image.layer_data.channel_data.pixels })
 }
 
 /// Size of the layer that will be read, after every header was found to be within the budget.
@@ -82,8 +85,8 @@ fn check_headers(headers: &[Header]) -> Result<(u32, u32), String> {
             return Err(format!("claims {} blocks for {} x {} pixels", header.chunk_count, size.0, size.1));
         }
     }
-    let channel = |header: &Header, name: &str| header.channels.list.iter().position(|c| c.name == *name);
-    let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].iter().all(|name| channel(header, name).is_some());
+    let has = |header: &Header, name: &str| header.channels.list.iter().any(|c| c.name == *name);
+    let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].iter().all(|name| has(header, name));
     let Some(header) = headers.iter().find(has_rgb) else {
         let list = |h: &Header| h.channels.list.iter().map(|c| c.name.to_string()).collect::<Vec<_>>().join(", ");
         let found: Vec<String> = headers.iter().take(4).map(list).collect();

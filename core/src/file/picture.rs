@@ -53,8 +53,8 @@ pub fn write_picture(picture: &Picture, path: &Path, tone: ToneMap, exposure_ev:
     }
 }
 
-/// Writes 8-bit sRGB through a display transform; the file says which, and with what exposure. Alpha is stored, straight
-/// as PNG wants it, when a pixel is not opaque.
+/// Writes 8-bit sRGB through a display transform; the file says which, and with what exposure. Alpha is stored,
+/// straight as PNG wants it, when a pixel is not opaque.
 pub fn write_png(picture: &Picture, path: &Path, tone: ToneMap, exposure_ev: f32) -> Result<(), FileError> {
     check_whole(picture, path)?;
     let bytes = png::encode(picture, tone, exposure_ev)

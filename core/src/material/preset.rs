@@ -4,7 +4,6 @@
 //! here by spectral integration; nothing in a file is already a colour.
 
 mod check;
-mod conductor;
 mod library;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
@@ -19,8 +18,7 @@ use serde_json::{Map, Value};
 use crate::color::rgb;
 use crate::color::spectrum::interpolate;
 use crate::file::{FileError, read_bounded};
-use crate::surface::fresnel::{Fresnel, TABLE_SIZE};
-use conductor::exact;
+use crate::surface::fresnel::{Fresnel, TABLE_SIZE, exact};
 
 /// Names of the curves that [`Preset::fresnel`] makes.
 pub const FORMS: [&str; 3] = ["spectral", "rescaled", "schlick"];
@@ -154,7 +152,8 @@ impl Preset {
         exact(n, k, cos_theta)
     }
 
-    /// Exact reflectance as linear Rec.709 under D65, not clamped: saturated metals leave [0, 1] (the red of gold is 1.037).
+    /// Exact reflectance as linear Rec.709 under D65, not clamped: saturated metals leave [0, 1] (the red of gold is
+    /// 1.037).
     pub fn unclamped(&self, cos_theta: f64) -> DVec3 {
         rgb::integrate(|nm| self.reflectance(nm, cos_theta))
     }

@@ -20,8 +20,8 @@ pub const RELMSE_EPSILON: f64 = 0.01;
 pub enum MeasureError {
     /// They have different sizes.
     #[error(
-        "the reference is {reference_width} x {reference_height} pixels and the picture {width} x {height}; render both at \
-         one size"
+        "the reference is {reference_width} x {reference_height} pixels and the picture {width} x {height}; \
+         render both at one size"
     )]
     Size {
         /// Of the reference.

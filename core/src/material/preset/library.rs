@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use super::{Preset, PresetError};
 
-/// Files of `presets/metals`, sorted by name without regard to case. A test holds the list and the folder together.
+/// Files of `presets/metals`, sorted by name. A test holds the list and the folder together.
 pub(super) const FILES: [(&str, &str); 12] = [
     ("Ag.json", include_str!("../../../../presets/metals/Ag.json")),
     ("Al.json", include_str!("../../../../presets/metals/Al.json")),

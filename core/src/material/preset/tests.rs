@@ -5,8 +5,9 @@ use super::*;
 use crate::color::observer::wavelength_nm;
 use crate::file::testing::Folder;
 
-/// Id; reflectance at normal incidence at 450, 550, 650 nm, computed with the published table outside of the project, to
-/// four decimals; linear Rec.709 F0 (D65, CIE 1931, 5 nm) from an independent double precision computation, six digits.
+/// Id; reflectance at normal incidence at 450, 550, 650 nm, computed with the published table outside of the project,
+/// to four decimals; linear Rec.709 F0 (D65, CIE 1931, 5 nm) from an independent double precision computation, six
+/// digits.
 const KNOWN: [(&str, [f64; 3], [f64; 3]); 12] = [
     ("Ag", [0.9802, 0.9831, 0.9898], [0.989362, 0.983953, 0.977827]),
     ("Al", [0.9219, 0.9154, 0.9056], [0.907335, 0.915846, 0.922321]),

@@ -40,7 +40,7 @@ fn errors_list_what_exists() {
     assert!(unknown.contains("`rough`") && unknown.contains("roughness, anisotropy"), "{unknown}");
     let range = message("workbench?roughness=2");
     assert!(range.contains("`2`") && range.contains("0 to 1"), "{range}");
-    assert!(message("workbench?room=open").contains("closed, none"));
+    assert!(message("workbench?room=open").contains("walls, none"));
     assert!(message("workbench?roughness").contains("key=value"));
     assert!(message("workbench?roughness=0&roughness=1").contains("twice"));
     assert!(message("workbench?roughness=NaN").contains("NaN"));

@@ -2,12 +2,15 @@
 
 mod camera;
 pub mod gallery;
+mod validate;
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::material::Material;
+
+pub use validate::Fault;
 
 /// Everything that a picture is made from.
 ///

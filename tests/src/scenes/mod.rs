@@ -150,7 +150,7 @@ mod tests {
             assert_eq!(scene.cameras.iter().filter(|c| c.name == "main").count(), 1, "{name}");
             assert!(scene.environment.is_some() || !scene.lights.is_empty(), "{name}");
             assert!((100..20_000).contains(&scene.triangle_count()), "{name}: {}", scene.triangle_count());
-            assert!(scene.instances.iter().all(|i| i.mesh < scene.meshes.len() && i.material < scene.materials.len()));
+            assert_eq!(scene.validate(), Ok(()), "{name}");
         }
     }
 }

@@ -56,11 +56,7 @@ pub(super) fn flatten(
         let world_from_local = world_from_parent * parent_from_local;
         place(data, node, &at, world_from_local, &mut meshes, &mut scene, meter, report)?;
         for child in node.children.iter().flatten().rev() {
-            waiting.push(Waiting {
-                node: child.value(),
-                world_from_parent: world_from_local,
-                depth: depth + 1,
-            });
+            waiting.push(Waiting { node: child.value(), world_from_parent: world_from_local, depth: depth + 1 });
         }
     }
     Some(scene)

@@ -1,29 +1,13 @@
 use super::*;
 use crate::scene::Scene;
 
-/// What every scene promises its users: indices in range, attribute lists of one length, finite numbers.
-fn assert_sound(scene: &Scene) {
-    assert!(!scene.instances.is_empty() && !scene.cameras.is_empty(), "{}", scene.name);
-    for instance in &scene.instances {
-        assert!(instance.mesh < scene.meshes.len() && instance.material < scene.materials.len(), "{}", instance.name);
-        assert!(instance.world_from_local.matrix3.determinant().abs() > 1e-9, "{}", instance.name);
-    }
-    for mesh in &scene.meshes {
-        let count = mesh.positions.len();
-        assert!(mesh.normals.len() == count && mesh.tangents.len() == count, "{}", mesh.name);
-        assert!(mesh.uvs.iter().all(|uvs| uvs.len() == count), "{}", mesh.name);
-        assert!(mesh.colors.is_empty() || mesh.colors.len() == count, "{}", mesh.name);
-        assert!(mesh.indices.iter().all(|&i| (i as usize) < count), "{}", mesh.name);
-        assert!(mesh.positions.iter().all(|p| p.is_finite()), "{}", mesh.name);
-    }
-}
-
 #[test]
 fn every_scene_of_the_list_opens_by_its_name_with_and_without_the_prefix() {
     assert!(!list().is_empty());
     for entry in list() {
         let scene = open(entry.name).unwrap();
-        assert_sound(&scene);
+        assert_eq!(scene.validate(), Ok(()), "{}", entry.name);
+        assert!(!scene.instances.is_empty() && !scene.cameras.is_empty(), "{}", entry.name);
         assert_eq!(scene.name, entry.name);
         let prefixed = open(&format!("gallery:{}", entry.name)).unwrap();
         assert_eq!(prefixed.triangle_count(), scene.triangle_count());
@@ -40,7 +24,7 @@ fn errors_list_what_exists() {
     assert!(unknown.contains("`rough`") && unknown.contains("roughness, anisotropy"), "{unknown}");
     let range = message("workbench?roughness=2");
     assert!(range.contains("`2`") && range.contains("0 to 1"), "{range}");
-    assert!(message("workbench?room=open").contains("closed, none"));
+    assert!(message("workbench?room=open").contains("walls, none"));
     assert!(message("workbench?roughness").contains("key=value"));
     assert!(message("workbench?roughness=0&roughness=1").contains("twice"));
     assert!(message("workbench?roughness=NaN").contains("NaN"));

@@ -209,6 +209,23 @@ fn tangents_are_those_that_mikktspace_makes_of_the_same_texture_coordinates() {
 }
 
 #[test]
+fn the_tangent_at_a_pole_is_that_of_the_middle_of_its_triangle() {
+    let ball = sphere(1.0, 16);
+    let mut poles = 0;
+    each_triangle(&ball, |t| {
+        for (pole, from, to) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| (t[i], t[j], t[k])) {
+            if ball.positions[pole].y.abs() == 1.0 {
+                let edge = (ball.positions[to] - ball.positions[from]).normalize();
+                let cosine = ball.tangents[pole].truncate().dot(edge) * ball.positions[pole].y;
+                assert!(cosine > 0.9999, "{edge} at {}", ball.positions[pole]);
+                poles += 1;
+            }
+        }
+    });
+    assert_eq!(poles, 32);
+}
+
+#[test]
 fn combined_meshes_keep_colours_beside_parts_without_any() {
     let red = Vec4::new(1.0, 0.0, 0.0, 1.0);
     let mesh = combined("both", [plane(1.0, 1.0), colored(plane(1.0, 1.0), red), plane(1.0, 1.0)]);

@@ -39,50 +39,7 @@ const MIDDLE: f32 = 0.325;
 
 /// Adds the ball, its foot and its plinth.
 pub fn add_parts(scene: &mut Scene, roughness: f32, anisotropy: f32) {
-    let gold = add_material(
-        scene,
-        Material {
-            name: "ball".into(),
-            base_color: Vec3::new(1.0, 0.75, 0.34),
-            metallic: 1.0,
-            roughness,
-            anisotropy,
-            // Tangents go around the axis and anisotropy blurs along its direction: across the lines of a lathe.
-            anisotropy_rotation: FRAC_PI_2,
-            ..Material::default()
-        },
-    );
-    let enamel = add_material(
-        scene,
-        Material {
-            name: "core".into(),
-            base_color: Vec3::new(0.02, 0.045, 0.09),
-            roughness: 0.45,
-            coat: 1.0,
-            coat_roughness: 0.06,
-            ..Material::default()
-        },
-    );
-    let steel = add_material(
-        scene,
-        Material {
-            name: "ring".into(),
-            base_color: Vec3::new(0.66, 0.65, 0.63),
-            metallic: 1.0,
-            roughness: 0.12,
-            ..Material::default()
-        },
-    );
-    let stone = add_material(
-        scene,
-        Material {
-            name: "plinth".into(),
-            base_color: Vec3::new(0.05, 0.05, 0.055),
-            roughness: 0.35,
-            ..Material::default()
-        },
-    );
-
+    let [gold, enamel, steel, stone] = materials(roughness, anisotropy).map(|material| add_material(scene, material));
     let upright = Affine3A::from_translation(Vec3::new(0.0, MIDDLE, 0.0));
     // Tilted, so that the camera looks on the facet and the highlights of the sides are not upright.
     let tilted = upright * Affine3A::from_quat(Quat::from_rotation_z(-0.16) * Quat::from_rotation_x(0.2));
@@ -94,7 +51,43 @@ pub fn add_parts(scene: &mut Scene, roughness: f32, anisotropy: f32) {
     add(scene, "plinth", plinth, stone, Affine3A::from_translation(Vec3::new(0.0, 0.5 * PLINTH_TOP, 0.0)));
 }
 
-/// Middle of a circle of radius `edge` around which a fillet runs: at a distance from the origin and at a height.
+/// The materials of the shells and the foot, the core, the ring and the plinth.
+fn materials(roughness: f32, anisotropy: f32) -> [Material; 4] {
+    let gold = Material {
+        name: "ball".into(),
+        base_color: Vec3::new(1.0, 0.75, 0.34),
+        metallic: 1.0,
+        roughness,
+        anisotropy,
+        // Tangents go around the axis and anisotropy blurs along its direction: across the lines of a lathe.
+        anisotropy_rotation: FRAC_PI_2,
+        ..Material::default()
+    };
+    let enamel = Material {
+        name: "core".into(),
+        base_color: Vec3::new(0.02, 0.045, 0.09),
+        roughness: 0.45,
+        coat: 1.0,
+        coat_roughness: 0.06,
+        ..Material::default()
+    };
+    let steel = Material {
+        name: "ring".into(),
+        base_color: Vec3::new(0.66, 0.65, 0.63),
+        metallic: 1.0,
+        roughness: 0.12,
+        ..Material::default()
+    };
+    let stone = Material {
+        name: "plinth".into(),
+        base_color: Vec3::new(0.05, 0.05, 0.055),
+        roughness: 0.35,
+        ..Material::default()
+    };
+    [gold, enamel, steel, stone]
+}
+
+/// Middle of a fillet: a point of the half plane at a distance from the origin and at a height.
 fn at_height(distance: f32, y: f32) -> Vec2 {
     Vec2::new((distance * distance - y * y).max(0.0).sqrt(), y)
 }
@@ -131,7 +124,7 @@ fn lower_shell() -> Mesh {
     shape::revolve("lower shell", &profile, AROUND)
 }
 
-/// The core on its stem, with a groove around it.
+/// The core on its stem.
 fn core() -> Mesh {
     let radius = 0.122;
     let stem = Vec2::new(0.045, -INNER);

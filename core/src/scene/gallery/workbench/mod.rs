@@ -45,7 +45,7 @@ const PARAMS: &[ParamSpec] = &[
         key: "room",
         label: "Room",
         unit: "",
-        kind: ParamKind::Choice { options: &["closed", "none"], default: 0 },
+        kind: ParamKind::Choice { options: &["walls", "none"], default: 0 },
         help: "The walls with their window, or only the ball on its plinth and the floor.",
         affects: Affects::Prepare,
     },
@@ -59,9 +59,18 @@ fn build(settings: &Settings) -> Scene {
         room::add_walls(&mut scene);
     }
     scene.lights.push(spot());
-    let degrees = f32::to_radians;
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.2, 0.58, 1.45), Vec3::new(0.01, 0.275, 0.0), degrees(28.5)));
-    scene.cameras.push(Camera::look_at("close", Vec3::new(0.3, 0.6, 0.72), Vec3::new(0.0, 0.37, 0.02), degrees(34.0)));
+    scene.cameras.push(Camera::look_at(
+        "main",
+        Vec3::new(0.2, 0.58, 1.45),
+        Vec3::new(0.01, 0.275, 0.0),
+        28.5_f32.to_radians(),
+    ));
+    scene.cameras.push(Camera::look_at(
+        "close",
+        Vec3::new(0.3, 0.6, 0.72),
+        Vec3::new(0.0, 0.37, 0.02),
+        34.0_f32.to_radians(),
+    ));
     scene
 }
 

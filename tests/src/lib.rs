@@ -1,5 +1,7 @@
 //! Shared fixtures of the cross-crate tests: what a test needs beyond the repository, and a folder to write into.
 
+pub mod scenes;
+
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

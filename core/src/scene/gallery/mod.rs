@@ -86,9 +86,8 @@ fn settings(scene: &GalleryScene, query: &str) -> Result<Settings, GalleryError>
     let mut settings = Settings::new(scene.params);
     let mut seen = Vec::new();
     for part in query.split('&').filter(|part| !part.is_empty()) {
-        let (key, text) = part
-            .split_once('=')
-            .ok_or_else(|| GalleryError::Malformed { scene: scene.name, text: part.into() })?;
+        let (key, text) =
+            part.split_once('=').ok_or_else(|| GalleryError::Malformed { scene: scene.name, text: part.into() })?;
         settings.set(key, text).map_err(|source| GalleryError::Param { scene: scene.name, source })?;
         if seen.contains(&key) {
             return Err(GalleryError::Twice { scene: scene.name, key: key.into() });

@@ -28,47 +28,56 @@ struct SoftBox {
     falloff: f32,
 }
 
-/// The lamps: key left, fill right, two strips beside the object for its edges, one from above.
-const BOXES: [SoftBox; 5] = [
+/// The lamps: key left, fill right, two strips beside the object for its edges, one from above, and a white card below
+/// the camera that shapes what looks down.
+const BOXES: [SoftBox; 6] = [
     SoftBox {
         azimuth: -0.85,
-        elevation: 0.62,
-        half: Vec2::new(0.42, 0.56),
+        elevation: 0.6,
+        half: Vec2::new(0.36, 0.5),
         softness: 0.05,
-        radiance: Vec3::new(12.6, 12.0, 11.2),
-        falloff: 0.35,
+        radiance: Vec3::new(9.6, 9.1, 8.4),
+        falloff: 0.4,
     },
     SoftBox {
-        azimuth: 1.05,
+        azimuth: 1.0,
         elevation: 0.35,
-        half: Vec2::new(0.36, 0.62),
+        half: Vec2::new(0.3, 0.55),
         softness: 0.16,
-        radiance: Vec3::new(2.3, 2.6, 3.0),
+        radiance: Vec3::new(1.7, 1.95, 2.25),
         falloff: 0.3,
     },
     SoftBox {
         azimuth: -2.0,
-        elevation: 0.3,
-        half: Vec2::new(0.075, 0.8),
+        elevation: 0.25,
+        half: Vec2::new(0.055, 0.8),
         softness: 0.03,
-        radiance: Vec3::new(19.0, 19.5, 20.0),
+        radiance: Vec3::new(16.0, 16.4, 16.8),
         falloff: 0.2,
     },
     SoftBox {
         azimuth: 2.05,
-        elevation: 0.25,
-        half: Vec2::new(0.06, 0.75),
-        softness: 0.03,
-        radiance: Vec3::new(16.0, 15.0, 13.5),
+        elevation: 0.2,
+        half: Vec2::new(0.045, 0.75),
+        softness: 0.025,
+        radiance: Vec3::new(14.0, 13.2, 12.0),
         falloff: 0.2,
     },
     SoftBox {
         azimuth: 0.15,
-        elevation: 1.45,
-        half: Vec2::new(0.75, 0.28),
-        softness: 0.1,
-        radiance: Vec3::new(5.0, 5.0, 5.0),
+        elevation: 1.4,
+        half: Vec2::new(0.6, 0.2),
+        softness: 0.08,
+        radiance: Vec3::new(3.6, 3.6, 3.6),
         falloff: 0.4,
+    },
+    SoftBox {
+        azimuth: 0.35,
+        elevation: -0.5,
+        half: Vec2::new(0.6, 0.16),
+        softness: 0.1,
+        radiance: Vec3::new(1.9, 1.8, 1.65),
+        falloff: 0.5,
     },
 ];
 
@@ -82,25 +91,37 @@ pub fn studio() -> Environment {
     let mut texels = vec![Vec3::ZERO; (width * height) as usize];
     texels.par_chunks_exact_mut(width as usize).enumerate().for_each(|(y, row)| {
         let (sin_theta, cos_theta) = ((y as f32 + 0.5) / height as f32 * PI).sin_cos();
+        let room = Room::at(cos_theta);
         for (texel, (sin, cos)) in row.iter_mut().zip(&columns) {
             let direction = Vec3::new(sin_theta * sin, cos_theta, -sin_theta * cos);
-            *texel = lamps.iter().fold(room(direction), |sum, lamp| sum + lamp.radiance(direction));
+            *texel = lamps.iter().fold(room.radiance(direction), |sum, lamp| sum + lamp.radiance(direction));
         }
     });
     Environment { name: "studio".into(), width, height, texels, rotation: 0.0, strength: 1.0 }
 }
 
-/// The unlit studio: a dark backdrop, brightest just above the horizon, and a warm floor that fades out below.
-fn room(direction: Vec3) -> Vec3 {
-    let up = direction.y;
-    // The floor meets the backdrop in a round cove, not in an edge.
-    let floor = smooth_step(0.06, -0.1, up);
-    let glow = (-(up - 0.1) * (up - 0.1) / 0.08).exp();
-    // The backdrop behind the object (-z) is lit, the wall behind the camera is not.
-    let behind = 0.5 - 0.5 * direction.z;
-    let wall = Vec3::new(0.05, 0.055, 0.065) + Vec3::new(0.36, 0.38, 0.42) * (glow * (0.25 + 0.75 * behind));
-    let ground = Vec3::new(0.34, 0.29, 0.24) * (1.0 - 0.55 * smooth_step(-0.1, -1.0, up));
-    wall.lerp(ground, floor)
+/// The unlit studio at one height: a dark backdrop, brightest just above the horizon, and a warm floor that fades out
+/// below.
+struct Room {
+    /// Radiance behind the camera (+z), and what the backdrop (-z) has more.
+    front: Vec3,
+    backdrop: Vec3,
+}
+
+impl Room {
+    /// `up` is the sine of the elevation.
+    fn at(up: f32) -> Room {
+        // The floor meets the backdrop in a round cove, not in an edge.
+        let floor = smooth_step(0.05, -0.08, up);
+        let ground = Vec3::new(0.40, 0.33, 0.26) * (1.0 - 0.65 * smooth_step(-0.05, -0.9, up));
+        let glow = (-(up - 0.1) * (up - 0.1) / 0.06).exp() * Vec3::new(0.26, 0.275, 0.30);
+        let wall = Vec3::new(0.035, 0.038, 0.044) + 0.2 * glow;
+        Room { front: wall.lerp(ground, floor), backdrop: 0.55 * glow * (1.0 - floor) }
+    }
+
+    fn radiance(&self, direction: Vec3) -> Vec3 {
+        self.front + self.backdrop * (0.5 - 0.5 * direction.z)
+    }
 }
 
 /// A soft box with its frame of reference.
@@ -109,6 +130,8 @@ struct Lamp<'a> {
     toward: Vec3,
     right: Vec3,
     up: Vec3,
+    /// Cosine of the angle to the corners, beyond which nothing is left.
+    least_depth: f32,
 }
 
 impl<'a> Lamp<'a> {
@@ -117,14 +140,15 @@ impl<'a> Lamp<'a> {
         let (rise, level) = shape.elevation.sin_cos();
         let toward = Vec3::new(level * sin, rise, level * cos);
         let right = Vec3::new(cos, 0.0, -sin);
-        Lamp { shape, toward, right, up: toward.cross(right) }
+        let least_depth = (1.0 + shape.half.length_squared()).sqrt().recip();
+        Lamp { shape, toward, right, up: toward.cross(right), least_depth }
     }
 
     /// What the box sends from a direction.
     fn radiance(&self, direction: Vec3) -> Vec3 {
         let SoftBox { half, softness, radiance, falloff, .. } = *self.shape;
         let depth = direction.dot(self.toward);
-        if depth <= 0.0 {
+        if depth <= self.least_depth {
             return Vec3::ZERO;
         }
         let at = Vec2::new(direction.dot(self.right), direction.dot(self.up)) / depth;

@@ -59,9 +59,7 @@ fn keys_change_the_workbench() {
 #[test]
 fn the_workbench_has_its_slots_its_light_and_a_size_that_any_renderer_bears() {
     let scene = open("workbench").unwrap();
-    for slot in
-        ["ball", "core", "ring", "plinth", "floor", "wall-left", "wall-right", "wall-back", "window", "frame"]
-    {
+    for slot in ["ball", "core", "ring", "plinth", "floor", "wall-left", "wall-right", "wall-back", "window", "frame"] {
         assert_eq!(scene.materials.iter().filter(|m| m.name == slot).count(), 1, "{slot}");
     }
     assert!(scene.triangle_count() <= 60_000, "{}", scene.triangle_count());
@@ -96,11 +94,13 @@ fn the_studio_is_finite_and_bright_in_few_places() {
 #[test]
 fn the_key_light_of_the_studio_is_where_the_direction_convention_puts_it() {
     let studio = studio();
-    // Left of the camera (-x), behind it (+z) and up.
-    let d = glam::Vec3::new(-0.61, 0.58, 0.54);
-    let u = 0.5 + d.x.atan2(-d.z) / std::f32::consts::TAU;
-    let v = d.normalize().y.acos() / std::f32::consts::PI;
-    let (x, y) = ((u * studio.width as f32) as usize, (v * studio.height as f32) as usize);
-    let texel = studio.texels[y * studio.width as usize + x];
-    assert!(texel.y > 10.0, "{texel}");
+    let seen = |x: f32, y: f32, z: f32| {
+        let d = glam::Vec3::new(x, y, z).normalize();
+        let (u, v) = (0.5 + d.x.atan2(-d.z) / std::f32::consts::TAU, d.y.acos() / std::f32::consts::PI);
+        let (column, row) = ((u * studio.width as f32) as usize, (v * studio.height as f32) as usize);
+        studio.texels[row * studio.width as usize + column].y
+    };
+    // Left of the camera (-x), behind it (+z) and up; the fill is on the right, and before the camera hangs nothing.
+    let (key, fill, before) = (seen(-0.62, 0.56, 0.54), seen(0.79, 0.34, 0.51), seen(-0.62, 0.56, -0.54));
+    assert!(key > 3.0 * fill && fill > 1.0 && before < 0.5, "key {key}, fill {fill}, before the camera {before}");
 }

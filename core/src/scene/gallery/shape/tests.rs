@@ -7,7 +7,8 @@ fn bodies() -> Vec<(Mesh, f32)> {
     let (size, edge) = (Vec3::new(0.5, 0.3, 0.4), 0.04);
     let inner = size - 2.0 * edge;
     let faces = 2.0 * edge * (inner.x * inner.y + inner.y * inner.z + inner.z * inner.x);
-    let rounded = inner.element_product() + faces + PI * edge * edge * inner.element_sum() + 4.0 / 3.0 * PI * edge.powi(3);
+    let rounded =
+        inner.element_product() + faces + PI * edge * edge * inner.element_sum() + 4.0 / 3.0 * PI * edge.powi(3);
     // A cylinder with rounded edges: Pappus on the quarter disc that is left of each square corner.
     let (r, h, e) = (0.2_f32, 0.3_f32, 0.05_f32);
     let quarter = PI * e * e / 4.0 * (r - e + 4.0 * e / (3.0 * PI));
@@ -47,7 +48,12 @@ fn shapes() -> Vec<Mesh> {
     let mut all: Vec<Mesh> = bodies().into_iter().map(|(mesh, _)| mesh).collect();
     all.push(plane(0.4, 0.2));
     all.push(disc(0.3, 48, 4));
-    let flare = [Corner::sharp(0.1, 0.2), Corner::round(0.05, 0.1, 0.04), Corner::round(0.2, 0.02, 0.03), Corner::sharp(0.2, 0.0)];
+    let flare = [
+        Corner::sharp(0.1, 0.2),
+        Corner::round(0.05, 0.1, 0.04),
+        Corner::round(0.2, 0.02, 0.03),
+        Corner::sharp(0.2, 0.0),
+    ];
     all.push(revolve("flare", &Profile::rounded(&flare, 6), 48));
     let skewed = Affine3A::from_scale_rotation_translation(
         Vec3::new(1.0, 2.0, 0.5),
@@ -63,7 +69,7 @@ fn shapes() -> Vec<Mesh> {
 
 /// Calls `check` with the corners of every triangle.
 fn each_triangle(mesh: &Mesh, mut check: impl FnMut([usize; 3])) {
-    assert!(!mesh.indices.is_empty() && mesh.indices.len() % 3 == 0, "{}", mesh.name);
+    assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3), "{}", mesh.name);
     for t in mesh.indices.chunks_exact(3) {
         check([t[0] as usize, t[1] as usize, t[2] as usize]);
     }
@@ -112,9 +118,9 @@ fn normals_are_unit_and_agree_with_the_winding() {
                 let normal = mesh.normals[i];
                 assert!((normal.length() - 1.0).abs() < 1e-5, "{}: {normal}", mesh.name);
                 // The widest turn between a facet and its corners: half of a sixth of a quarter turn and its diagonal,
-                // 0.97 in cosine; stretching by 4 : 1 widens it.
+                // 0.97 in cosine; stretching by 4 : 1 widens it to 0.88.
                 let cosine = normal.dot(geometric);
-                assert!(cosine > 0.9, "{}: {normal} on a facet of {geometric}, cosine {cosine}", mesh.name);
+                assert!(cosine > 0.8, "{}: {normal} on a facet of {geometric}, cosine {cosine}", mesh.name);
             }
         });
     }

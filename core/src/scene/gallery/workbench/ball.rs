@@ -47,6 +47,8 @@ pub fn add_parts(scene: &mut Scene, roughness: f32, anisotropy: f32) {
             metallic: 1.0,
             roughness,
             anisotropy,
+            // Tangents go around the axis and anisotropy blurs along its direction: across the lines of a lathe.
+            anisotropy_rotation: FRAC_PI_2,
             ..Material::default()
         },
     );
@@ -133,10 +135,7 @@ fn lower_shell() -> Mesh {
 fn core() -> Mesh {
     let radius = 0.122;
     let stem = Vec2::new(0.045, -INNER);
-    let profile = Profile::new()
-        .arc(Vec2::ZERO, radius, FRAC_PI_2, -1.1, 26)
-        .to(Vec2::new(stem.x, -0.125))
-        .to(stem);
+    let profile = Profile::new().arc(Vec2::ZERO, radius, FRAC_PI_2, -1.1, 26).to(Vec2::new(stem.x, -0.125)).to(stem);
     shape::revolve("core", &profile, AROUND)
 }
 

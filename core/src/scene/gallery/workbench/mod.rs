@@ -60,7 +60,7 @@ fn build(settings: &Settings) -> Scene {
     }
     scene.lights.push(spot());
     let degrees = f32::to_radians;
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.42, 0.78, 1.42), Vec3::new(0.02, 0.31, 0.0), degrees(36.0)));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.2, 0.58, 1.45), Vec3::new(0.01, 0.275, 0.0), degrees(28.5)));
     scene.cameras.push(Camera::look_at("close", Vec3::new(0.3, 0.6, 0.72), Vec3::new(0.0, 0.37, 0.02), degrees(34.0)));
     scene
 }
@@ -73,7 +73,7 @@ fn spot() -> Light {
         name: "spot".into(),
         position,
         direction: (Vec3::new(0.02, 0.2, -0.05) - position).normalize(),
-        intensity: Vec3::new(15.0, 13.8, 12.0),
+        intensity: Vec3::new(13.0, 11.8, 10.0),
         range: f32::INFINITY,
         kind: LightKind::Spot { inner_angle: 0.3, outer_angle: 0.5 },
     }

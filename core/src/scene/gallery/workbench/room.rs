@@ -9,18 +9,18 @@ use crate::{
 };
 
 /// Inside of the room: x is half its width, y its height, z half its depth; metres.
-const ROOM: Vec3 = Vec3::new(0.8, 0.68, 0.64);
+const ROOM: Vec3 = Vec3::new(0.64, 0.6, 0.48);
 /// Of the walls.
 const THICKNESS: f32 = 0.04;
 /// Side of a tile and the joint between two.
-const TILE: f32 = 0.16;
+const TILE: f32 = 0.128;
 const JOINT: f32 = 0.003;
 
 /// Adds tiles on a dark bed.
 pub fn add_floor(scene: &mut Scene) {
     let material = Material {
         name: "floor".into(),
-        base_color: Vec3::new(0.42, 0.40, 0.375),
+        base_color: Vec3::new(0.30, 0.285, 0.265),
         roughness: 0.4,
         ..Material::default()
     };
@@ -51,10 +51,11 @@ fn tone(column: usize, row: usize) -> f32 {
 
 /// Adds the walls and the window.
 pub fn add_walls(scene: &mut Scene) {
-    let paint = |name: &str, base_color| Material { name: name.into(), base_color, roughness: 0.7, ..Material::default() };
-    let warm = add_material(scene, paint("wall-left", Vec3::new(0.56, 0.19, 0.085)));
-    let cool = add_material(scene, paint("wall-right", Vec3::new(0.075, 0.25, 0.36)));
-    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.46, 0.445, 0.42)));
+    let paint =
+        |name: &str, base_color| Material { name: name.into(), base_color, roughness: 0.7, ..Material::default() };
+    let warm = add_material(scene, paint("wall-left", Vec3::new(0.5, 0.15, 0.06)));
+    let cool = add_material(scene, paint("wall-right", Vec3::new(0.04, 0.145, 0.225)));
+    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.34, 0.33, 0.315)));
     let side = Vec3::new(THICKNESS, ROOM.y, 2.0 * ROOM.z);
     let aside = ROOM.x + 0.5 * THICKNESS;
     wall(scene, "wall-left", warm, side, Vec3::new(-aside, 0.5 * ROOM.y, 0.0));
@@ -70,12 +71,12 @@ fn wall(scene: &mut Scene, name: &str, material: usize, size: Vec3, middle: Vec3
 
 /// A window on the left wall: a pane that glows behind a frame with a cross of mullions.
 fn add_window(scene: &mut Scene) {
-    let size = Vec2::new(0.56, 0.4);
+    let size = Vec2::new(0.5, 0.34);
     let frame_width = 0.026;
     let glow = Material {
         name: "window".into(),
         base_color: Vec3::splat(0.02),
-        emission: 7.0 * Vec3::new(1.0, 0.93, 0.82),
+        emission: 4.0 * Vec3::new(1.0, 0.93, 0.82),
         roughness: 0.3,
         ..Material::default()
     };
@@ -90,10 +91,11 @@ fn add_window(scene: &mut Scene) {
     // On the wall, +z of the window into the room.
     let placed = Affine3A::from_rotation_translation(
         Quat::from_rotation_y(std::f32::consts::FRAC_PI_2),
-        Vec3::new(-ROOM.x, 0.39, -0.08),
+        Vec3::new(-ROOM.x, 0.36, -0.06),
     );
     // The pane is 4 mm off the wall, the frame 22 mm deep.
-    let pane = shape::transformed(shape::plane(size.x, size.y), &Affine3A::from_translation(Vec3::new(0.0, 0.0, 0.004)));
+    let pane =
+        shape::transformed(shape::plane(size.x, size.y), &Affine3A::from_translation(Vec3::new(0.0, 0.0, 0.004)));
     add(scene, "window", pane, glow, placed);
     let bar = |width: f32, height: f32, x: f32, y: f32, depth: f32| -> Mesh {
         let bar = shape::block(Vec3::new(width, height, depth), 0.004, 2);

@@ -56,7 +56,8 @@ pub struct AdapterReport {
 /// An open device with its queue.
 ///
 /// Errors that no scope catches and the loss of the device are kept here and returned by [`Gpu::check`]; after one of
-/// them the renderer stops instead of drawing on.
+/// them the renderer stops instead of drawing on. Clones share the device.
+#[derive(Clone)]
 pub struct Gpu {
     /// The wgpu device.
     pub device: wgpu::Device,

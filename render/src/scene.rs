@@ -358,3 +358,31 @@ fn material_group(
     }
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("material"), layout, entries: &entries })
 }
+
+impl GpuScene {
+    /// Binds group 0 and the vertex and index buffers.
+    pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass, scene_group: &wgpu::BindGroup) {
+        pass.set_bind_group(0, scene_group, &[]);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+
+    /// Draws one instance with its textures at group 1.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass, draw: &Draw) {
+        pass.set_bind_group(1, &self.material_groups[draw.material], &[]);
+        pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.instance..draw.instance + 1);
+    }
+
+    /// Group 0 with the given view.
+    pub(crate) fn group(&self, device: &wgpu::Device, layout: &wgpu::BindGroupLayout, view: &wgpu::Buffer) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("scene"),
+            layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: self.instances.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: self.materials.as_entire_binding() },
+            ],
+        })
+    }
+}

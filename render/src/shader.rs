@@ -3,7 +3,6 @@
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
 use burnish_core::surface::layered;
-use burnish_core::color;
 
 /// A shader module, joined from leaves and the pass's own files.
 pub struct Shader {
@@ -24,14 +23,14 @@ const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 pub static GBUFFER: Shader = Shader {
     name: "gbuffer",
     leaves: &[&layered::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, include_str!("pass/gbuffer/gbuffer.wgsl")],
+    files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/gbuffer/gbuffer.wgsl")],
 };
 
 /// Depth from a light.
 pub static SHADOW: Shader = Shader {
     name: "shadow",
     leaves: &[&layered::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, include_str!("pass/shadow/shadow.wgsl")],
+    files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/shadow/shadow.wgsl")],
 };
 
 /// Builds the cubes of an environment.
@@ -59,15 +58,8 @@ pub static FORWARD: Shader = Shader {
 pub static ACCUMULATE: Shader =
     Shader { name: "accumulate", leaves: &[], files: &[include_str!("pass/accumulate/accumulate.wgsl")] };
 
-/// Display transform of a linear picture.
-pub static DISPLAY: Shader = Shader {
-    name: "display",
-    leaves: &[&color::tone::WGSL],
-    files: &[include_str!("pass/display/display.wgsl")],
-};
-
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE, &DISPLAY];
+pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "
@@ -76,7 +68,7 @@ const SCENE_BINDINGS: &str = "
 @group(0) @binding(2) var<storage, read> materials: array<MaterialData>;
 ";
 
-/// Functions that leaves ask for and the environment pass never calls.
+/// Functions that leaves ask for and passes that do not light surfaces never call.
 const NO_TABLES: &str = "
 fn ggx_albedo_entry(index: u32) -> f32 { return 0.0; }
 fn fresnel_table(table: u32, entry: u32) -> vec3f { return vec3f(0.0); }

@@ -152,7 +152,7 @@ const AGX_OUTSET: Mat3 = Mat3::from_cols(
     Vec3::new(-0.099_025_01, -0.098_956_45, 1.151_018_7),
 );
 
-/// Sobotka 2022, AgX, with its own sigmoid rather than a polynomial fit. Domain: x >= 0.
+/// Sobotka, AgX, with its own sigmoid rather than a polynomial fit of it. Domain: x >= 0.
 ///
 /// The curve gives code values for a screen of exponent 2.2; they are turned into light here.
 fn tone_agx(x: Vec3) -> Vec3 {
@@ -183,7 +183,7 @@ const ACES_OUTPUT: Mat3 = Mat3::from_cols(
     Vec3::new(-0.073_67, -0.006_05, 1.076_02),
 );
 
-/// Hill 2017, fit of the ACES 1.0 reference rendering and sRGB output transforms. Domain: x >= 0.
+/// Hill (BakingLab), a fit of the ACES 1.0 reference rendering and sRGB output transforms. Domain: x >= 0.
 ///
 /// As published, without the factor 1/0.6 that some programs put before it: middle grey 0.18 becomes 0.106.
 fn tone_aces(x: Vec3) -> Vec3 {

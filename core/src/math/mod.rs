@@ -1,4 +1,14 @@
-//! Frames, unit vectors, point sets, quadrature and statistics.
+//! Frames, unit vectors, point sets, quadrature, special functions and statistics.
+
+pub mod frame;
+pub mod oct;
+pub mod quadrature;
+pub mod sampling;
+pub mod special;
+pub mod statistics;
+
+#[cfg(test)]
+mod tests;
 
 use crate::leaf::Leaf;
 

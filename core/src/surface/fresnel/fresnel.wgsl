@@ -41,7 +41,8 @@ fn fresnel_conductor(n: f32, k: f32, cos_theta: f32) -> f32 {
     let a = select(larger, smaller, t0 < 0.0);
     let t1 = ab + c2;
     let t2 = 2.0 * a * c;
-    let rs = (t1 - t2) / (t1 + t2);
+    // At 90 degrees an index of one gives 0 / 0; like every other it reflects all there.
+    let rs = select(1.0, (t1 - t2) / (t1 + t2), t1 + t2 > 0.0);
     let t3 = c2 * ab + s2 * s2;
     let t4 = t2 * s2;
     let sum = t3 + t4;

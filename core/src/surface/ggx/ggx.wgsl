@@ -5,17 +5,19 @@ const GGX_ALPHA_MIN: f32 = 1e-3;
 // Smith masking: heights of both directions correlated, or independent.
 const GGX_CORRELATED: u32 = 0u;
 const GGX_SEPARABLE: u32 = 1u;
-// Nodes of the albedo tables over the cosine and over alpha.
-const GGX_ALBEDO_MU: u32 = 32u;
-const GGX_ALBEDO_ALPHA: u32 = 32u;
-// The flat array: per masking the square root of the loss (alpha rows of mu), the mean loss / alpha^2, the Schlick
-// ratio (alpha rows of mu) and the mean Schlick albedo.
-const GGX_ALBEDO_LOSS_MEAN: u32 = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-const GGX_ALBEDO_SCHLICK: u32 = GGX_ALBEDO_LOSS_MEAN + GGX_ALBEDO_ALPHA;
+// Nodes of the albedo tables over the cosine and over either width.
+const GGX_ALBEDO_MU: u32 = 24u;
+const GGX_ALBEDO_ALPHA: u32 = 16u;
+// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss / alpha^2
+// over both widths, the Schlick ratio over (width, cosine), the mean Schlick albedo; the last named runs fastest.
+const GGX_ALBEDO_LOSS_MEAN: u32 = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_SCHLICK: u32 = GGX_ALBEDO_LOSS_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
 const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA;
 // alpha_min^(1/4), where the alpha axis of the tables starts.
-const GGX_ALBEDO_ROOT_MIN: f32 = 0.177827941;
+const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
+// How far the slopes across the view are narrowed by those along it.
+const GGX_ALBEDO_ANISOTROPY: f32 = 0.45;
 
 fn ggx_clamp_alpha(alpha: vec2f) -> vec2f {
     return clamp(alpha, vec2f(GGX_ALPHA_MIN), vec2f(1.0));
@@ -120,76 +122,101 @@ fn ggx_pdf(wo: vec3f, wi: vec3f, alpha: vec2f) -> f32 {
     return 0.5 * ggx_distribution(h * inverseSqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
 }
 
-// Linear interpolation of 32 entries from `first` at x in [0, 1].
-fn ggx_albedo_row(first: u32, x: f32) -> f32 {
-    let scaled = clamp(x, 0.0, 1.0) * f32(GGX_ALBEDO_MU - 1u);
-    let i = min(u32(scaled), GGX_ALBEDO_MU - 2u);
-    return mix(ggx_albedo_entry(first + i), ggx_albedo_entry(first + i + 1u), scaled - f32(i));
+// A place between two nodes of an axis: index and fraction; x in [0, 1] over `count` nodes.
+struct GgxAxis {
+    index: u32,
+    fraction: f32,
 }
 
-// Bilinear interpolation of the table that starts at `first`.
-fn ggx_albedo_grid(first: u32, x: f32, y: f32) -> f32 {
-    let scaled = clamp(y, 0.0, 1.0) * f32(GGX_ALBEDO_ALPHA - 1u);
-    let j = min(u32(scaled), GGX_ALBEDO_ALPHA - 2u);
-    let row = first + j * GGX_ALBEDO_MU;
-    return mix(ggx_albedo_row(row, x), ggx_albedo_row(row + GGX_ALBEDO_MU, x), scaled - f32(j));
+fn ggx_albedo_axis(x: f32, count: u32) -> GgxAxis {
+    let scaled = clamp(x, 0.0, 1.0) * f32(count - 1u);
+    let index = min(u32(scaled), count - 2u);
+    return GgxAxis(index, scaled - f32(index));
 }
 
-// Coordinate of alpha on the tables, [alpha_min, 1] to [0, 1].
-fn ggx_albedo_y(alpha: f32) -> f32 {
-    return (sqrt(sqrt(clamp(alpha, GGX_ALPHA_MIN, 1.0))) - GGX_ALBEDO_ROOT_MIN) / (1.0 - GGX_ALBEDO_ROOT_MIN);
+// A width on its axis.
+fn ggx_albedo_axis_alpha(alpha: f32) -> GgxAxis {
+    let root = sqrt(sqrt(clamp(alpha, GGX_ALPHA_MIN, 1.0)));
+    return ggx_albedo_axis((root - GGX_ALBEDO_ROOT_MIN) / (1.0 - GGX_ALBEDO_ROOT_MIN), GGX_ALBEDO_ALPHA);
 }
 
-// Energy that single scattering loses when F = 1: 1 - E(mu), mu = cosine of the view.
-fn ggx_loss(mu: f32, alpha: f32, masking: u32) -> f32 {
-    let a = clamp(alpha, GGX_ALPHA_MIN, 1.0);
+// Linear interpolation of the entries from `first`.
+fn ggx_albedo_line(first: u32, x: GgxAxis) -> f32 {
+    return mix(ggx_albedo_entry(first + x.index), ggx_albedo_entry(first + x.index + 1u), x.fraction);
+}
+
+// Bilinear interpolation of rows of `width` entries.
+fn ggx_albedo_plane(first: u32, x: GgxAxis, y: GgxAxis, width: u32) -> f32 {
+    let row = first + y.index * width;
+    return mix(ggx_albedo_line(row, x), ggx_albedo_line(row + width, x), y.fraction);
+}
+
+// Loss at cosine mu for the widths in the plane of the view and across it.
+fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
     let m = clamp(mu, 0.0, 1.0);
-    // The loss is a function of mu / alpha where alpha is small: this axis follows it.
-    let root = ggx_albedo_grid(masking * GGX_ALBEDO_STRIDE, m * (1.0 + a) / (m + a), ggx_albedo_y(a));
+    // At small widths the loss is a function of mu / a: this axis follows it.
+    let a = sqrt(0.5 * (along * along + across * across));
+    let x = ggx_albedo_axis(m * (1.0 + a) / (m + a), GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(along);
+    let z = ggx_albedo_axis_alpha(across);
+    let slab = masking * GGX_ALBEDO_STRIDE + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let near = ggx_albedo_plane(slab, x, y, GGX_ALBEDO_MU);
+    let root = mix(near, ggx_albedo_plane(next, x, y, GGX_ALBEDO_MU), z.fraction);
     return root * root;
 }
 
-// Cosine-weighted mean of ggx_loss over the hemisphere.
-fn ggx_loss_mean(alpha: f32, masking: u32) -> f32 {
-    let a = clamp(alpha, GGX_ALPHA_MIN, 1.0);
-    return a * a * ggx_albedo_row(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_LOSS_MEAN, ggx_albedo_y(a));
+// Widths along the plane of w and across it, for which the table is looked up.
+fn ggx_toward(w: vec3f, alpha: vec2f) -> vec2f {
+    let a = ggx_clamp_alpha(alpha);
+    let a2 = a * a;
+    let cos2 = 1.0 - w.x * w.x - w.y * w.y;
+    let cos4 = cos2 * cos2;
+    // The azimuth turns to the wider axis toward the normal, where it is undefined.
+    let turned = w.x * w.x * (1.0 + cos2) * (1.0 + cos4);
+    let c = clamp(turned + select(0.0, cos4 * cos4, a.x > a.y), 0.0, 1.0);
+    let p2 = a2.y + (a2.x - a2.y) * c;
+    let q2 = a2.x + (a2.y - a2.x) * c;
+    let narrowed2 = a2.x * a2.y / p2;
+    return sqrt(vec2f(p2, q2 + (narrowed2 - q2) * GGX_ALBEDO_ANISOTROPY));
 }
 
-// Directional albedo E(mu) of single scattering, F = 1.
+// Energy that single scattering loses toward w when F = 1.
+fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    let widths = ggx_toward(w, alpha);
+    return ggx_loss_in_plane(w.z, widths.x, widths.y, masking);
+}
+
+// Cosine-weighted mean of ggx_loss over the hemisphere.
+fn ggx_loss_mean(alpha: vec2f, masking: u32) -> f32 {
+    let a = ggx_clamp_alpha(alpha);
+    let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_LOSS_MEAN;
+    let x = ggx_albedo_axis_alpha(a.x);
+    return 0.5 * dot(a, a) * ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(a.y), GGX_ALBEDO_ALPHA);
+}
+
+// Directional albedo of single scattering when F = 1, at cosine mu for the isotropic width alpha.
 fn ggx_albedo(mu: f32, alpha: f32, masking: u32) -> f32 {
-    return 1.0 - ggx_loss(mu, alpha, masking);
+    let a = clamp(alpha, GGX_ALPHA_MIN, 1.0);
+    return 1.0 - ggx_loss_in_plane(mu, a, a, masking);
 }
 
 // Its cosine-weighted mean.
 fn ggx_albedo_mean(alpha: f32, masking: u32) -> f32 {
-    return 1.0 - ggx_loss_mean(alpha, masking);
+    return 1.0 - ggx_loss_mean(vec2f(alpha), masking);
 }
 
 // Mean of (1 - x)^5 over the reflected light, x = cosine at the microfacet: with f0 and f90 the directional albedo is
 // E mix(f0, f90, this).
 fn ggx_albedo_schlick_ratio(mu: f32, alpha: f32, masking: u32) -> f32 {
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK;
-    return ggx_albedo_grid(first, sqrt(clamp(mu, 0.0, 1.0)), ggx_albedo_y(alpha));
+    let x = ggx_albedo_axis(sqrt(clamp(mu, 0.0, 1.0)), GGX_ALBEDO_MU);
+    return ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(alpha), GGX_ALBEDO_MU);
 }
 
 // Cosine-weighted mean of E times ggx_albedo_schlick_ratio.
 fn ggx_albedo_schlick_mean(alpha: f32, masking: u32) -> f32 {
-    return ggx_albedo_row(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, ggx_albedo_y(alpha));
-}
-
-// How much the loss toward a grazing direction follows the width in its plane rather than the mean width.
-const GGX_ANISOTROPY: f32 = 0.3;
-
-// Width of the isotropic surface that loses about as much toward w as the anisotropic one.
-fn ggx_alpha_toward(w: vec3f, alpha: vec2f) -> f32 {
-    let a2 = ggx_clamp_alpha(alpha) * ggx_clamp_alpha(alpha);
-    return sqrt(0.5 * (a2.x + a2.y) + GGX_ANISOTROPY * (a2.x - a2.y) * (w.x * w.x - w.y * w.y));
-}
-
-// Width whose mean loss stands for the anisotropic surface.
-fn ggx_alpha_mean(alpha: vec2f) -> f32 {
-    let a = ggx_clamp_alpha(alpha);
-    return sqrt(0.5 * dot(a, a));
+    return ggx_albedo_line(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, ggx_albedo_axis_alpha(alpha));
 }
 
 // Light that leaves after more than one bounce: BRDF without the cosine, reciprocal.
@@ -197,8 +224,8 @@ fn ggx_multiple(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel_mean: vec3f, masking
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return vec3f(0.0);
     }
-    let mean = ggx_loss_mean(ggx_alpha_mean(alpha), masking);
-    let lost = ggx_loss(wo.z, ggx_alpha_toward(wo, alpha), masking) * ggx_loss(wi.z, ggx_alpha_toward(wi, alpha), masking);
+    let mean = ggx_loss_mean(alpha, masking);
+    let lost = ggx_loss(wo, alpha, masking) * ggx_loss(wi, alpha, masking);
     let f = clamp(fresnel_mean, vec3f(0.0), vec3f(1.0));
     let bounces = f * f * (1.0 - mean) / (1.0 - f * mean);
     return bounces * (lost * INV_PI / mean);

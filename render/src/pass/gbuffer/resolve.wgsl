@@ -220,9 +220,8 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     texel.coat = clamp(m.coat * s.coat, 0.0, 1.0);
     let coat_roughness = clamp(m.coat_roughness * s.coat_roughness, 0.0, 1.0);
     texel.coat_alpha = max(coat_roughness * coat_roughness, GGX_ALPHA_MIN);
-    let interface = (m.ior - 1.0) / (m.ior + 1.0);
     let weight = clamp(m.specular * s.specular, 0.0, 1.0);
-    texel.dielectric_f0 = weight * min(interface * interface * m.specular_color * s.specular_color, vec3f(1.0));
+    texel.dielectric_f0 = dielectric_f0(m.ior, weight, m.specular_color * s.specular_color);
     texel.dielectric_f90 = weight;
     if (m.flags & MATERIAL_UNLIT) != 0u {
         texel.emission = base;

@@ -149,7 +149,7 @@ impl Info {
         writeln!(out, "triangles    {}", self.triangles)?;
         writeln!(out, "materials    {}", self.materials.len())?;
         for (i, material) in self.materials.iter().enumerate() {
-            writeln!(out, "  #{i} {}", material.line(&self.images))?;
+            writeln!(out, "  #{i} {}", material.line())?;
         }
         writeln!(out, "lights       {}", self.lights.len())?;
         for (i, light) in self.lights.iter().enumerate() {
@@ -226,7 +226,7 @@ impl MaterialInfo {
     }
 
     /// Main factors, then what differs from a plain opaque material, then textures.
-    fn line(&self, images: &[ImageInfo]) -> String {
+    fn line(&self) -> String {
         let mut parts = vec![match &self.preset {
             Some(id) => format!("preset {id}"),
             None => format!("base color {}, metallic {}", spaced(self.base_color), self.metallic),
@@ -240,8 +240,7 @@ impl MaterialInfo {
         let words = [(self.alpha_mode, self.alpha_mode != "opaque"), ("double-sided", self.double_sided)];
         let words = words.into_iter().chain([("unlit", self.unlit)]);
         parts.extend(words.filter(|(_, is)| *is).map(|(word, _)| word.into()));
-        let image = |t: &TextureInfo| images.get(t.image).map_or_else(String::new, |i| format!(" ({})", i.name));
-        parts.extend(self.textures.iter().map(|t| format!("{} #{}{}", t.role, t.image, image(t))));
+        parts.extend(self.textures.iter().map(|t| format!("{} image #{}", t.role, t.image)));
         format!("{}: {}", self.name, parts.join(", "))
     }
 }

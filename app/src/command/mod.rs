@@ -3,6 +3,7 @@
 mod compare;
 mod doctor;
 mod info;
+mod measure;
 mod presets;
 mod render;
 
@@ -24,6 +25,8 @@ pub enum Command {
     Presets(presets::Args),
     /// Measure how different two pictures are
     Compare(compare::Args),
+    /// Measure how far the classical lighting is from the integrals it stands for
+    Measure(measure::Args),
     /// Show graphics adapters and libraries, and what is missing
     Doctor,
 }
@@ -35,6 +38,7 @@ impl Command {
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
             Command::Compare(args) => compare::run(args, out, err),
+            Command::Measure(args) => measure::run(args, out),
             Command::Doctor => doctor::run(out),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::Environment;
 
@@ -54,19 +54,16 @@ impl Environment {
         self.texels.get(y * self.width as usize + x).copied().unwrap_or(Vec3::ZERO)
     }
 
-    /// Calls `visit` with centre direction (world), radiance (strength included) and solid angle of `n` by `n` parts of
-    /// every texel of the rows `rows`. The solid angles of the whole map sum to 4 pi.
-    pub fn for_each_part(&self, rows: std::ops::Range<u32>, n: u32, mut visit: impl FnMut(Vec3, DVec3, f64)) {
-        let (width, height) = (f64::from(self.width * n), f64::from(self.height * n));
-        for y in rows.start * n..rows.end * n {
-            let edge = |i: u32| (std::f64::consts::PI * f64::from(i) / height).cos();
-            let solid_angle = (edge(y) - edge(y + 1)) * std::f64::consts::TAU / width;
-            for x in 0..self.width * n {
-                let uv = Vec2::new(((f64::from(x) + 0.5) / width) as f32, ((f64::from(y) + 0.5) / height) as f32);
-                let direction = self.direction_from_uv(uv);
-                visit(direction, self.radiance(direction).as_dvec3(), solid_angle);
-            }
-        }
+    /// World direction of a point of a texel; `inside` in [0, 1]^2 from the texel's top left.
+    pub fn texel_direction(&self, x: u32, y: u32, inside: Vec2) -> Vec3 {
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        self.direction_from_uv((Vec2::new(x as f32, y as f32) + inside) / size)
+    }
+
+    /// Solid angle of a texel of a row, in sr; those of the whole map sum to 4 pi.
+    pub fn texel_solid_angle(&self, y: u32) -> f64 {
+        let edge = |row: u32| (std::f64::consts::PI * f64::from(row) / f64::from(self.height)).cos();
+        (edge(y) - edge(y + 1)) * std::f64::consts::TAU / f64::from(self.width)
     }
 }
 
@@ -117,8 +114,8 @@ mod tests {
 
     #[test]
     fn solid_angles_sum_to_the_sphere() {
-        let mut sum = 0.0;
-        map(0.0).for_each_part(0..16, 2, |_, _, solid_angle| sum += solid_angle);
+        let map = map(0.0);
+        let sum: f64 = (0..map.height).map(|y| map.texel_solid_angle(y) * f64::from(map.width)).sum();
         assert!((sum - 4.0 * std::f64::consts::PI).abs() < 1e-9, "{sum}");
     }
 }

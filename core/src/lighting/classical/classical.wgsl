@@ -48,8 +48,8 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32) -> vec3f 
         let wi = frame_to_world(frame, vec3f(sin_i * cos(phi), sin_i * sin(phi), cos_i));
         let h = vec3f(sqrt(max(0.0, 1.0 - cos2)), 0.0, cos_h);
         let pdf = 0.25 * ggx_distribution(h, vec2f(alpha));
-        // One level finer than the sample's share: neighbouring footprints overlap through bilinear filtering.
-        let level = max(classical_footprint(wi, pdf, n, levels) - 1.0, 0.0);
+        // One level coarser than the share: neighbouring footprints overlap, so that a sun between two is not lost.
+        let level = min(classical_footprint(wi, pdf, n, levels) + 1.0, levels - 1.0);
         sum += cos_i * classical_radiance(wi, level);
         weight += cos_i;
     }

@@ -69,8 +69,8 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32) -> Vec3 {
         let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
         let h = Vec3::new(sin_h, 0.0, cos2.sqrt());
         let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
-        // One level finer than the sample's share: neighbouring footprints overlap through bilinear filtering.
-        let level = (footprint(wi, pdf, n, levels) - 1.0).max(0.0);
+        // One level coarser than the share: neighbouring footprints overlap, so that a sun between two is not lost.
+        let level = (footprint(wi, pdf, n, levels) + 1.0).min(levels - 1.0);
         sum += cos_i * maps.radiance(wi, level);
         weight += cos_i;
     }

@@ -1,4 +1,4 @@
-//! What the method approximates, in f64 and without haste: the yardstick of its tests and of its error table.
+//! What the method approximates, in f64 and without haste: the yardstick of its tests and of its error tables.
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -7,79 +7,119 @@ use crate::math::sampling;
 use crate::scene::Environment;
 use crate::surface::ggx::{self, Masking};
 
-/// Below this width a lobe is sampled, above it texels are summed: the lobe is then wider than several texels of a
-/// 1k map.
+/// Below this width a reflection is integrated by drawing its lobe, above it by summing texels: the lobe is then wider
+/// than several texels of a 1k map.
 const ALPHA_SUMMED: f32 = 0.03;
-/// Samples of a narrow lobe.
-const LOBE_SAMPLES: u32 = 1 << 15;
+/// Points of a lobe that is drawn.
+const LOBE_SAMPLES: u32 = 1 << 14;
+/// Parts along an edge into which a texel near the peak of a lobe is cut.
+const PARTS: u32 = 4;
 
-/// Radiance that a level of the prefiltered cube should hold: the lobe of N = V = R, weight D(h) cos(theta_i).
-///
-/// Sums `parts * parts` points of every texel that the lobe reaches.
-pub fn prefiltered(environment: &Environment, normal: Vec3, alpha: f32, parts: u32) -> DVec3 {
-    let mut sum = DVec3::ZERO;
-    let mut weights = 0.0;
-    let a2 = f64::from(alpha).powi(2);
-    let n = normal.as_dvec3();
-    environment.for_each_part(0..environment.height, parts, |direction, radiance, solid_angle| {
-        let cos_i = direction.as_dvec3().dot(n);
-        if cos_i <= 0.0 {
-            return;
-        }
-        // cos^2 of the half vector between N and L is (1 + cos_i) / 2; D up to its constant factor.
-        let cos2_h = 0.5 * (1.0 + cos_i);
-        let denominator = 1.0 - cos2_h + a2 * cos2_h;
-        let weight = solid_angle * cos_i / (denominator * denominator);
-        sum += weight * radiance;
-        weights += weight;
-    });
-    sum / weights.max(1e-300)
+/// An environment as a list of texels, for sums over the whole sphere.
+pub struct Texels<'a> {
+    environment: &'a Environment,
+    list: Vec<Texel>,
 }
 
-/// Radiance that a GGX mirror with F = 1 (single scattering, isotropic) sends toward `to_viewer`.
-pub fn reflected(
-    environment: &Environment,
-    normal: Vec3,
-    to_viewer: Vec3,
-    alpha: f32,
-    masking: Masking,
-) -> DVec3 {
-    if alpha < ALPHA_SUMMED {
-        reflected_by_lobe(environment, normal, to_viewer, alpha, masking)
-    } else {
-        reflected_by_texels(environment, normal, to_viewer, alpha, masking)
+struct Texel {
+    direction: Vec3,
+    radiance: Vec3,
+    solid_angle: f32,
+}
+
+impl<'a> Texels<'a> {
+    /// Directions, radiances and solid angles of all texels; 28 bytes each.
+    pub fn new(environment: &'a Environment) -> Texels<'a> {
+        let mut list = Vec::with_capacity(environment.texels.len());
+        for y in 0..environment.height {
+            let solid_angle = environment.texel_solid_angle(y) as f32;
+            for x in 0..environment.width {
+                let direction = environment.texel_direction(x, y, Vec2::splat(0.5));
+                list.push(Texel { direction, radiance: environment.radiance(direction), solid_angle });
+            }
+        }
+        Texels { environment, list }
     }
-}
 
-fn reflected_by_texels(e: &Environment, normal: Vec3, to_viewer: Vec3, alpha: f32, masking: Masking) -> DVec3 {
-    let frame = Frame::new(normal);
-    let wo = frame.to_local(to_viewer);
-    let width = Vec2::splat(alpha);
-    let mut sum = DVec3::ZERO;
-    e.for_each_part(0..e.height, 1, |direction, radiance, solid_angle| {
-        let cos_i = direction.dot(normal);
-        if cos_i > 0.0 {
-            let wi = frame.to_local(direction);
-            let value = ggx::half(wo, wi, width, masking).w;
-            sum += radiance * (f64::from(value * cos_i) * solid_angle);
+    /// Radiance that a level of the prefiltered cube should hold: the lobe of N = V = R, weight D(h) cos(theta_i).
+    pub fn prefiltered(&self, normal: Vec3, alpha: f32) -> DVec3 {
+        let a2 = f64::from(alpha).powi(2);
+        let weight = |direction: Vec3| {
+            let cos_i = f64::from(direction.dot(normal));
+            // sin^2 and cos^2 of the half vector's angle; D up to its constant factor.
+            let (sin2_h, cos2_h) = (0.25 * f64::from((direction - normal).length_squared()), 0.5 * (1.0 + cos_i));
+            let denominator = sin2_h + a2 * cos2_h;
+            if cos_i <= 0.0 { 0.0 } else { cos_i / (denominator * denominator) }
+        };
+        // Texels are cut where the lobe changes within one: out to some widths, and a texel's diagonal.
+        let texel = std::f32::consts::TAU / self.environment.width as f32;
+        let near = (1.0 - (8.0 * alpha + 2.0 * texel).powi(2) * 0.5).max(-1.0);
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        for (index, texel) in self.list.iter().enumerate() {
+            let cos_i = texel.direction.dot(normal);
+            if cos_i <= 0.0 {
+                continue;
+            }
+            if alpha < 0.1 && cos_i > near {
+                let share = f64::from(texel.solid_angle) / f64::from(PARTS * PARTS);
+                for (direction, radiance) in self.parts(index as u32) {
+                    let w = weight(direction) * share;
+                    sum += w * radiance.as_dvec3();
+                    weights += w;
+                }
+            } else {
+                let w = weight(texel.direction) * f64::from(texel.solid_angle);
+                sum += w * texel.radiance.as_dvec3();
+                weights += w;
+            }
         }
-    });
-    sum
-}
+        sum / weights.max(1e-300)
+    }
 
-fn reflected_by_lobe(e: &Environment, normal: Vec3, to_viewer: Vec3, alpha: f32, masking: Masking) -> DVec3 {
-    let frame = Frame::new(normal);
-    let wo = frame.to_local(to_viewer);
-    let width = Vec2::splat(alpha);
-    let g1 = ggx::masking(wo, width).max(1e-12);
-    let mut sum = DVec3::ZERO;
-    for i in 0..LOBE_SAMPLES {
-        let wm = ggx::sample_wm(wo, width, sampling::hammersley(i, LOBE_SAMPLES));
-        let wi = 2.0 * wo.dot(wm) * wm - wo;
-        if wi.z > 0.0 {
-            let weight = ggx::shadowing_masking(wo, wi, width, masking) / g1;
-            sum += e.radiance(frame.to_world(wi)).as_dvec3() * f64::from(weight);
+    /// Directions and interpolated radiances of the parts of a texel.
+    fn parts(&self, index: u32) -> impl Iterator<Item = (Vec3, Vec3)> {
+        let (x, y) = (index % self.environment.width, index / self.environment.width);
+        (0..PARTS * PARTS).map(move |part| {
+            let inside = (Vec2::new((part % PARTS) as f32, (part / PARTS) as f32) + 0.5) / PARTS as f32;
+            let direction = self.environment.texel_direction(x, y, inside);
+            (direction, self.environment.radiance(direction))
+        })
+    }
+
+    /// Radiance that an isotropic GGX surface with F = 1 (single scattering) reflects toward `to_viewer`.
+    pub fn reflected(&self, normal: Vec3, to_viewer: Vec3, alpha: f32, masking: Masking) -> DVec3 {
+        let frame = Frame::new(normal);
+        let wo = frame.to_local(to_viewer);
+        if alpha < ALPHA_SUMMED {
+            self.reflected_by_lobe(&frame, wo, Vec2::splat(alpha), masking)
+        } else {
+            self.reflected_by_texels(&frame, wo, Vec2::splat(alpha), masking)
         }
     }
-    sum / f64::from(LOBE_SAMPLES)
+
+    fn reflected_by_texels(&self, frame: &Frame, wo: Vec3, alpha: Vec2, masking: Masking) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for texel in &self.list {
+            let cos_i = texel.direction.dot(frame.n);
+            if cos_i > 0.0 {
+                let value = ggx::half(wo, frame.to_local(texel.direction), alpha, masking).w;
+                sum += f64::from(value * cos_i * texel.solid_angle) * texel.radiance.as_dvec3();
+            }
+        }
+        sum
+    }
+
+    fn reflected_by_lobe(&self, frame: &Frame, wo: Vec3, alpha: Vec2, masking: Masking) -> DVec3 {
+        let g1 = ggx::masking(wo, alpha).max(1e-12);
+        let mut sum = DVec3::ZERO;
+        for i in 0..LOBE_SAMPLES {
+            let wm = ggx::sample_wm(wo, alpha, sampling::hammersley(i, LOBE_SAMPLES));
+            let wi = 2.0 * wo.dot(wm) * wm - wo;
+            if wi.z > 0.0 {
+                let weight = ggx::shadowing_masking(wo, wi, alpha, masking) / g1;
+                sum += f64::from(weight) * self.environment.radiance(frame.to_world(wi)).as_dvec3();
+            }
+        }
+        sum / f64::from(LOBE_SAMPLES)
+    }
 }

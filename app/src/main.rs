@@ -1,2 +1,9 @@
 //! The `burnish` program.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // Unlocked handles: a panic message from another thread must not wait for this one.
+    let code = burnish::run(std::env::args_os().skip(1), &mut std::io::stdout(), &mut std::io::stderr());
+    ExitCode::from(code)
+}

@@ -13,5 +13,6 @@ pub mod material;
 pub mod math;
 pub mod measure;
 pub mod param;
+pub mod picture;
 pub mod scene;
 pub mod surface;

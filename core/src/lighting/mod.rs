@@ -5,4 +5,4 @@ pub mod classical;
 use crate::leaf::Leaf;
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[];
+pub static LEAVES: &[&Leaf] = &[&classical::WGSL];

@@ -1,5 +1,7 @@
 //! Materials: what a surface is made of, before textures are looked up.
 
+pub mod preset;
+
 use std::sync::Arc;
 
 use glam::{Mat3, Vec3};

@@ -1,6 +1,19 @@
-//! math
+//! Frames, unit vectors, point sets, quadrature, special functions and statistics.
+
+pub mod frame;
+pub mod oct;
+pub mod quadrature;
+pub mod sampling;
+pub mod special;
+pub mod statistics;
+
+#[cfg(test)]
+mod tests;
 
 use crate::leaf::Leaf;
 
+/// The WGSL twin of this folder.
+pub static WGSL: Leaf = Leaf { name: "math", source: include_str!("math.wgsl"), needs: &[], externs: "" };
+
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[];
+pub static LEAVES: &[&Leaf] = &[&WGSL];

@@ -1,5 +1,6 @@
 //! A scene as every renderer sees it: flat, validated, in metres, radians and linear Rec.709.
 
+mod environment;
 mod camera;
 pub mod gallery;
 mod validate;

@@ -1,4 +1,7 @@
 //! Surface terms, one folder each: Rust, its WGSL twin, its page, its facts.
+//!
+//! Directions are unit vectors in a local frame with z = n: `wo` toward the viewer, `wi` toward the light, both away
+//! from the surface. `eval` is a BRDF without the cosine.
 
 pub mod coat;
 pub mod dielectric;
@@ -7,7 +10,21 @@ pub mod ggx;
 pub mod lambert;
 pub mod layered;
 
+use glam::Vec3;
+
 use crate::leaf::Leaf;
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[];
+pub static LEAVES: &[&Leaf] =
+    &[&fresnel::WGSL, &ggx::WGSL, &lambert::WGSL, &dielectric::WGSL, &coat::WGSL, &layered::WGSL];
+
+/// A direction drawn from a BRDF.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Toward the light, local.
+    pub wi: Vec3,
+    /// The BRDF, without the cosine.
+    pub value: Vec3,
+    /// Density per steradian, positive and finite.
+    pub pdf: f32,
+}

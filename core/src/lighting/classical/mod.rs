@@ -1,6 +1,36 @@
-//! Environment maps, infinitely far.
+//! Environment maps, infinitely far away: prefiltered with the GGX lobe, or sampled per pixel.
+//!
+//! What the method is and where it is wrong stands in `README.md`. The renderer runs the WGSL twin over cube maps; the
+//! Rust functions here take the maps as a trait, so that tests can put formulas in their place.
 
-use crate::param::{Affects, ParamKind, ParamSpec};
+mod evaluate;
+pub mod exact;
+#[cfg(test)]
+mod tests;
+
+use std::sync::LazyLock;
+
+use crate::leaf::Leaf;
+use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::surface::fresnel::Fresnel;
+use crate::surface::ggx::Masking;
+use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
+use crate::surface::ggx::reflection::{CosineWeights, sample_curve};
+use crate::surface::layered;
+
+pub use evaluate::{Lobes, Maps, environment, footprint, prefilter};
+
+/// The WGSL twin.
+pub static WGSL: Leaf = Leaf {
+    name: "classical",
+    source: include_str!("classical.wgsl"),
+    needs: &[&layered::WGSL],
+    externs: "
+fn classical_radiance(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
+fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
+fn classical_irradiance(direction: vec3f) -> vec3f { return vec3f(PI); }
+",
+};
 
 /// Settings of this method.
 pub const PARAMS: &[ParamSpec] = &[
@@ -38,3 +68,76 @@ pub const PARAMS: &[ParamSpec] = &[
         affects: Affects::Frame,
     },
 ];
+
+/// The settings as a frame reads them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameSettings {
+    /// Samples per pixel and frame, 0 for the split sum.
+    pub samples: u32,
+    /// Smith masking.
+    pub masking: Masking,
+    /// Light that bounces between microfacets.
+    pub multiple_scattering: bool,
+}
+
+impl FrameSettings {
+    /// Reads settings made of [`PARAMS`]; what is not there keeps its default.
+    pub fn new(settings: &Settings) -> FrameSettings {
+        let samples = match settings.get("samples") {
+            Some(ParamValue::Integer(n)) => u32::try_from(n).unwrap_or(0),
+            _ => 0,
+        };
+        let masking = match settings.text("masking").as_deref() {
+            Some("separable") => Masking::Separable,
+            _ => Masking::Correlated,
+        };
+        let multiple_scattering = settings.text("multiple-scattering").as_deref() != Some("off");
+        FrameSettings { samples, masking, multiple_scattering }
+    }
+}
+
+/// Level of the prefiltered cube for a roughness in [0, 1]: fine steps where the lobe changes fast.
+pub fn level(roughness: f32, levels: f32) -> f32 {
+    let r = roughness.clamp(0.0, 1.0);
+    (levels - 1.0) * r * (2.0 - r)
+}
+
+/// Roughness that a level of the prefiltered cube is filtered for, the inverse of [`level`].
+pub fn roughness(level: f32, levels: f32) -> f32 {
+    1.0 - (1.0 - level / (levels - 1.0).max(1.0)).clamp(0.0, 1.0).sqrt()
+}
+
+/// Samples for a texel of a prefiltered level: coarse levels have few texels and wide lobes.
+pub fn prefilter_samples(level: u32) -> u32 {
+    (128 << level).min(4096)
+}
+
+/// Nodes of the cosine weights behind [`mean_fresnel_table`], per masking.
+static WEIGHTS: LazyLock<[Vec<CosineWeights>; 2]> = LazyLock::new(|| {
+    let mut weights = [Vec::new(), Vec::new()];
+    for j in 0..ALBEDO_ALPHA {
+        for i in 0..ALBEDO_MU {
+            let x = f64::from(i) / f64::from(ALBEDO_MU - 1);
+            let y = f64::from(j) / f64::from(ALBEDO_ALPHA - 1);
+            let root_min = f64::from(ALBEDO_ROOT_MIN);
+            let alpha = (root_min + y * (1.0 - root_min)).powi(4);
+            // The lowest node stands for grazing views, where the albedo itself is 0.
+            let [correlated, separable] = CosineWeights::new((x * x).max(1e-6), alpha);
+            weights[0].push(correlated);
+            weights[1].push(separable);
+        }
+    }
+    weights
+});
+
+/// Mean of a Fresnel curve over the light that a GGX lobe reflects, as the split sum looks it up: three grids (R, G, B)
+/// of `ALBEDO_ALPHA` rows of `ALBEDO_MU`, over the square root of the cosine and the fourth root of alpha as
+/// `ggx_albedo_schlick_ratio` lays them out. Multiplied by the albedo for F = 1 it is the directional albedo.
+pub fn mean_fresnel_table(fresnel: &Fresnel, masking: Masking) -> Vec<f32> {
+    let curve = sample_curve(|x| fresnel.eval(x));
+    let one = sample_curve(|_| glam::Vec3::ONE);
+    let weights = &WEIGHTS[masking as usize];
+    let means: Vec<_> =
+        weights.iter().map(|w| w.albedo(&curve) / w.albedo(&one).max(glam::Vec3::splat(1e-12))).collect();
+    (0..3).flat_map(|c| means.iter().map(move |mean| mean[c])).collect()
+}

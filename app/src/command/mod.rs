@@ -1,0 +1,71 @@
+//! The commands, one file each.
+
+mod compare;
+mod doctor;
+mod info;
+mod presets;
+mod render;
+
+use std::io::Write;
+
+use clap::Subcommand;
+use serde::Serialize;
+
+use crate::failure::{Exit, Failure};
+
+/// What the program can be asked to do.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture
+    Render(render::Args),
+    /// List what a scene consists of
+    Info(info::Args),
+    /// List the metal presets
+    Presets(presets::Args),
+    /// Measure how different two pictures are
+    Compare(compare::Args),
+    /// Show graphics adapters and libraries, and what is missing
+    Doctor,
+}
+
+impl Command {
+    pub fn run(self, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
+        match self {
+            Command::Render(args) => render::run(args, out, err),
+            Command::Info(args) => info::run(args, out),
+            Command::Presets(args) => presets::run(args, out),
+            Command::Compare(args) => compare::run(args, out, err),
+            Command::Doctor => doctor::run(out),
+        }
+    }
+}
+
+/// Writes what a machine reads.
+fn write_json(out: &mut dyn Write, value: &impl Serialize) -> Result<(), Failure> {
+    serde_json::to_writer_pretty(&mut *out, value).map_err(std::io::Error::from)?;
+    writeln!(out)?;
+    Ok(())
+}
+
+/// Numbers for people with spaces between, rounded to five digits of the largest.
+fn spaced(numbers: impl IntoIterator<Item = f32>) -> String {
+    let numbers: Vec<f64> = numbers.into_iter().map(f64::from).collect();
+    let largest = numbers.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+    let decimals = if largest > 0.0 { (4.0 - largest.log10().floor()).clamp(0.0, 40.0) } else { 0.0 };
+    // Through text and back: Display then leaves out trailing zeros.
+    let rounded = numbers.iter().map(|v| format!("{v:.*}", decimals as usize).parse().unwrap_or(*v));
+    rounded.map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spaced;
+
+    #[test]
+    fn numbers_are_rounded_by_the_largest_of_them() {
+        assert_eq!(spaced([-0.258_312_3, 1e-9, -0.9]), "-0.25831 0 -0.9");
+        assert_eq!(spaced([1.5e-6, 0.0]), "0.0000015 0");
+        assert_eq!(spaced([123_456.7]), "123457");
+        assert_eq!(spaced([0.0, -0.0]), "0 0");
+    }
+}

@@ -1,0 +1,177 @@
+//! `burnish render`: a scene to a picture.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::file::{PictureFormat, write_picture};
+use burnish_core::lighting::classical;
+use burnish_core::material::preset::{self, PresetError};
+use burnish_core::material::{Material, Reflectance};
+use burnish_core::param::{ParamSpec, Settings};
+use burnish_core::scene::{Camera, Scene, gallery};
+use burnish_render::{Gpu, Renderer, View};
+use glam::UVec2;
+
+use crate::failure::{Exit, Failure};
+use crate::source::{self, Opened, SceneArg};
+use crate::value::{self, CameraChoice, MetalChoice};
+
+#[derive(clap::Args)]
+#[command(after_help = settings_help())]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArg,
+    /// Picture to write: .png (what a screen shows) or .exr (linear radiance)
+    #[arg(long, value_name = "FILE", value_parser = value::picture_path)]
+    out: PathBuf,
+    /// Environment map, .hdr or .exr [default: the scene's own, else a studio]
+    #[arg(long, value_name = "FILE")]
+    env: Option<PathBuf>,
+    /// Metal for the material SLOT, a name or #index; for all without one; repeatable
+    #[arg(long, value_name = "PRESET[:SLOT]", value_parser = value::metal)]
+    metal: Vec<MetalChoice>,
+    /// Roughness factor, 0 to 1, of the materials that got a --metal; without --metal of all
+    #[arg(long, value_name = "R", value_parser = value::number(0.0, 1.0))]
+    roughness: Option<f32>,
+    /// Anisotropy strength, 0 to 1, of the same materials
+    #[arg(long, value_name = "A", value_parser = value::number(0.0, 1.0))]
+    anisotropy: Option<f32>,
+    /// Setting of the lighting, see below; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
+    set: Vec<(String, String)>,
+    /// Pixels of the picture
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = value::size)]
+    size: UVec2,
+    /// Eye and target in metres and the vertical angle in degrees [default: all in view; a gallery scene's first]
+    #[arg(long, value_name = "NAME|#INDEX|EX,EY,EZ,TX,TY,TZ,FOV", value_parser = value::camera, allow_hyphen_values = true)]
+    camera: Option<CameraChoice>,
+    /// Display transform of a .png: none, neutral, agx or aces [default: neutral]
+    #[arg(long, value_parser = str::parse::<ToneMap>)]
+    tone: Option<ToneMap>,
+    /// Exposure of a .png in stops, -32 to 32 [default: 0]
+    #[arg(long, value_name = "EV", value_parser = value::number(-32.0, 32.0), allow_negative_numbers = true)]
+    exposure: Option<f32>,
+    /// Jittered frames that are averaged, 1 to 4096
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    spp_jitter: u32,
+}
+
+pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
+    let shows = PictureFormat::of(&args.out) == Ok(PictureFormat::Png);
+    if !shows && (args.tone.is_some() || args.exposure.is_some()) {
+        return Err(Failure::usage(
+            "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
+        ));
+    }
+    // Before the work, not after it.
+    if let Some(folder) = args.out.parent().filter(|f| !f.as_os_str().is_empty() && !f.is_dir()) {
+        let (file, folder) = (args.out.display(), folder.display());
+        return Err(Failure::resources(format!(
+            "{file}: there is no folder {folder}; create it or choose another --out"
+        )));
+    }
+    let settings = settings(&args.set)?;
+    let Opened { mut scene, mut notices, from_gallery } = args.scene.open()?;
+    if let Some(file) = &args.env {
+        let (environment, more) = source::environment(file)?;
+        scene.environment = Some(environment);
+        notices.extend(more);
+    } else if scene.environment.is_none() {
+        scene.environment = Some(Arc::new(gallery::studio()));
+    }
+    notices.extend(set_materials(&mut scene, &args, &settings)?);
+    let camera = camera(&scene, &args, from_gallery)?;
+    for notice in &notices {
+        writeln!(err, "burnish: notice: {notice}")?;
+    }
+
+    let start = Instant::now();
+    let gpu = Gpu::new().map_err(Failure::resources)?;
+    let view = View { size: args.size, camera, settings, jitter_frames: args.spp_jitter };
+    let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    let picture = renderer.render(&view).map_err(Failure::resources)?;
+    write_picture(&picture, &args.out, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0))
+        .map_err(Failure::resources)?;
+    let (UVec2 { x, y }, frames) = (args.size, args.spp_jitter);
+    let (adapter, secs) = (&gpu.report().name, start.elapsed().as_secs_f32());
+    writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", args.out.display())?;
+    Ok(Exit::Ok)
+}
+
+/// The settings that `--set` takes, from their declaration.
+fn settings_help() -> String {
+    let line = |spec: &ParamSpec| {
+        let value = Settings::new(classical::PARAMS).text(spec.key).unwrap_or_default();
+        format!("  {}: {} [default: {value}]\n      {}\n", spec.key, spec.kind, spec.help)
+    };
+    format!("Settings:\n{}", classical::PARAMS.iter().map(line).collect::<String>())
+}
+
+fn settings(list: &[(String, String)]) -> Result<Settings, Failure> {
+    let mut settings = Settings::new(classical::PARAMS);
+    for (key, text) in list {
+        settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
+    }
+    Ok(settings)
+}
+
+/// Applies `--metal`, `--roughness` and `--anisotropy`; returns what the user should know.
+fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<Vec<String>, Failure> {
+    let mut notices = Vec::new();
+    let mut changed = vec![false; scene.materials.len()];
+    for MetalChoice { preset, slot } in &args.metal {
+        let preset = preset::find(preset).map_err(|e| metal_failure(preset, e))?;
+        let form = settings.text("fresnel").unwrap_or_default();
+        let fresnel = Arc::new(preset.fresnel(&form).map_err(|e| metal_failure(&preset.id, e))?);
+        let slots = match slot {
+            Some(slot) => slot
+                .among("material", scene.materials.iter().map(|m| m.name.as_str()))
+                .map_err(|e| Failure::usage(format!("--metal {}: {e}", preset.id)))?,
+            None => (0..scene.materials.len()).collect(),
+        };
+        for slot in slots {
+            let material = &mut scene.materials[slot];
+            material.reflectance = Reflectance::Preset { id: preset.id.clone(), fresnel: fresnel.clone() };
+            if std::mem::take(&mut material.unlit) {
+                notices.push(format!("material `{}` was unlit and is lit now to show its metal", material.name));
+            }
+            changed[slot] = true;
+        }
+    }
+    let all = args.metal.is_empty();
+    let targets = scene.materials.iter_mut().zip(&changed).filter(|(_, changed)| all || **changed);
+    for (Material { roughness, anisotropy, .. }, _) in targets {
+        *roughness = args.roughness.unwrap_or(*roughness);
+        *anisotropy = args.anisotropy.unwrap_or(*anisotropy);
+    }
+    Ok(notices)
+}
+
+/// A preset's file may be at fault, or the name that was given.
+fn metal_failure(preset: &str, error: PresetError) -> Failure {
+    match error {
+        PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } => {
+            Failure::input(Path::new(preset), error)
+        }
+        PresetError::Unknown { .. } | PresetError::Form(_) => Failure::usage(format!("--metal {preset}: {error}")),
+    }
+}
+
+fn camera(scene: &Scene, args: &Args, from_gallery: bool) -> Result<Camera, Failure> {
+    match &args.camera {
+        Some(CameraChoice::LookAt { eye, target, yfov }) => Ok(Camera::look_at("look at", *eye, *target, *yfov)),
+        Some(CameraChoice::Of(pick)) => {
+            let found = pick
+                .among("camera", scene.cameras.iter().map(|c| c.name.as_str()))
+                .map_err(|e| Failure::usage(format!("--camera: {e}; or give ex,ey,ez,tx,ty,tz,fov")))?;
+            Ok(scene.cameras[found[0]].clone())
+        }
+        None => Ok(match scene.cameras.first() {
+            Some(camera) if from_gallery => camera.clone(),
+            _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
+        }),
+    }
+}

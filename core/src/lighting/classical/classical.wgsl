@@ -1,0 +1,205 @@
+// Environment light from infinitely far away. The pass supplies
+//   classical_radiance(direction, level)     cube of radiance, box-filtered mips
+//   classical_prefiltered(direction, level)  cube of GGX-filtered radiance, one width a level
+//   classical_irradiance(direction)          integral of radiance times cosine
+// and ggx_albedo_entry, through which the tables of mean reflectance are read as well.
+
+// Level of the prefiltered cube for a roughness: fine steps where the lobe changes fast.
+fn classical_level(roughness: f32, levels: f32) -> f32 {
+    let r = clamp(roughness, 0.0, 1.0);
+    return (levels - 1.0) * r * (2.0 - r);
+}
+
+// Its inverse: roughness that level `level` of `levels` is filtered for.
+fn classical_roughness(level: f32, levels: f32) -> f32 {
+    return 1.0 - sqrt(clamp(1.0 - level / max(levels - 1.0, 1.0), 0.0, 1.0));
+}
+
+// Solid angle of a texel of a cube with 2^(levels - 1) texels along an edge.
+fn classical_texel(direction: vec3f, levels: f32) -> f32 {
+    let m = max(abs(direction.x), max(abs(direction.y), abs(direction.z)));
+    return 4.0 * m * m * m * exp2(-2.0 * (levels - 1.0));
+}
+
+// Level whose texels are as large as the share of one of n samples of that density.
+fn classical_footprint(direction: vec3f, pdf: f32, n: u32, levels: f32) -> f32 {
+    let ratio = 1.0 / (f32(n) * max(pdf, 1e-12) * classical_texel(direction, levels));
+    return clamp(0.5 * log2(max(ratio, 1e-12)), 0.0, levels - 1.0);
+}
+
+// Radiance filtered with the GGX lobe of N = V = R: weight D(h) cos(theta_i).
+fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32) -> vec3f {
+    let frame = frame_new(normal);
+    let a2 = alpha * alpha;
+    var sum = vec3f(0.0);
+    var weight = 0.0;
+    for (var i = 0u; i < n; i++) {
+        let u = sampling_hammersley(i, n);
+        // Half vectors with density D cos; tan^2 = alpha^2 u / (1 - u). Half a step in, so that none is wasted on u = 0.
+        let v = u.x + 0.5 / f32(n);
+        let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
+        let cos_h = sqrt(cos2);
+        let cos_i = 2.0 * cos2 - 1.0;
+        if cos_i <= 0.0 {
+            continue;
+        }
+        let sin_i = 2.0 * sqrt(max(0.0, 1.0 - cos2)) * cos_h;
+        let phi = 2.0 * PI * u.y;
+        let wi = frame_to_world(frame, vec3f(sin_i * cos(phi), sin_i * sin(phi), cos_i));
+        let h = vec3f(sqrt(max(0.0, 1.0 - cos2)), 0.0, cos_h);
+        let pdf = 0.25 * ggx_distribution(h, vec2f(alpha));
+        // One level finer than the sample's share: neighbouring footprints overlap through bilinear filtering.
+        let level = max(classical_footprint(wi, pdf, n, levels) - 1.0, 0.0);
+        sum += cos_i * classical_radiance(wi, level);
+        weight += cos_i;
+    }
+    return sum / max(weight, 1e-12);
+}
+
+// Directional albedo of single scattering for the surface's metal; table 0 stands for a curve f0 + (1 - f0)(1 - x)^5.
+fn classical_metal_albedo(s: Surface, table: u32, wo: vec3f) -> vec3f {
+    let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+    let width = dielectric_width(s.alpha);
+    if table == 0u {
+        return e * mix(s.fresnel.f0, vec3f(1.0), ggx_albedo_schlick_ratio(wo.z, width, s.masking));
+    }
+    let x = ggx_albedo_axis(sqrt(clamp(wo.z, 0.0, 1.0)), GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(width);
+    let size = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let mean = vec3f(
+        ggx_albedo_plane(table, x, y, GGX_ALBEDO_MU),
+        ggx_albedo_plane(table + size, x, y, GGX_ALBEDO_MU),
+        ggx_albedo_plane(table + 2u * size, x, y, GGX_ALBEDO_MU),
+    );
+    return e * mean;
+}
+
+// Fresnel of the reflection that metal and dielectric share.
+fn classical_fresnel(s: Surface, cos_theta: f32) -> vec3f {
+    var value = vec3f(0.0);
+    if s.metallic > 0.0 {
+        value += s.metallic * fresnel_eval(s.fresnel, cos_theta);
+    }
+    if s.metallic < 1.0 {
+        value += (1.0 - s.metallic) * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
+    }
+    return value;
+}
+
+// Normal bent toward the axis along which an anisotropic lobe is narrow, which stretches the one lookup of the split sum.
+fn classical_bent_normal(base: Frame, wo_world: vec3f, alpha: vec2f) -> vec3f {
+    let along = alpha.x >= alpha.y;
+    let axis = select(base.b, base.t, along);
+    let wide = max(alpha.x, alpha.y);
+    let narrow = min(alpha.x, alpha.y);
+    let side = cross(axis, wo_world);
+    let toward = cross(side, axis);
+    let length2 = dot(toward, toward);
+    if length2 < 1e-8 || wide <= narrow {
+        return base.n;
+    }
+    let amount = (1.0 - narrow / wide) * min(1.0, 4.0 * wide);
+    return normalize(mix(base.n, toward * inverseSqrt(length2), 0.5 * amount));
+}
+
+// Reflection by one lookup: prefiltered radiance times albedo, the split sum.
+fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f32) -> vec3f {
+    let wo_world = frame_to_world(base, wo);
+    let n = classical_bent_normal(base, wo_world, s.alpha);
+    let direction = reflect(-wo_world, n);
+    let roughness = sqrt(sqrt(s.alpha.x * s.alpha.y));
+    var albedo = vec3f(0.0);
+    if s.metallic > 0.0 {
+        albedo += s.metallic * classical_metal_albedo(s, table, wo);
+    }
+    if s.metallic < 1.0 {
+        let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+        let ratio = ggx_albedo_schlick_ratio(wo.z, dielectric_width(s.alpha), s.masking);
+        albedo += (1.0 - s.metallic) * e * mix(s.dielectric_f0, vec3f(s.dielectric_f90), ratio);
+    }
+    return albedo * classical_prefiltered(direction, classical_level(roughness, levels));
+}
+
+// Reflection by filtered importance sampling of visible normals.
+fn classical_sampled(s: Surface, base: Frame, wo: vec3f, n: u32, rotation: vec2f, levels: f32) -> vec3f {
+    let g1 = ggx_masking(wo, s.alpha);
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < n; i++) {
+        let u = fract(sampling_hammersley(i, n) + rotation);
+        let wm = ggx_sample_wm(wo, s.alpha, u);
+        let wi = reflect(-wo, wm);
+        if wi.z <= 0.0 {
+            continue;
+        }
+        let pdf = ggx_pdf(wo, wi, s.alpha);
+        let weight = ggx_shadowing_masking(wo, wi, s.alpha, s.masking) / max(g1, 1e-12);
+        let direction = frame_to_world(base, wi);
+        let level = classical_footprint(direction, pdf, n, levels);
+        sum += weight * classical_fresnel(s, dot(wi, wm)) * classical_radiance(direction, level);
+    }
+    return sum / f32(n);
+}
+
+// Light of the environment that the surface sends toward the viewer. `to_viewer` is a unit vector in world space;
+// levels: of the radiance cube, of the prefiltered cube; samples: 0 for the split sum.
+fn classical_environment(
+    s: Surface, table: u32, base: Frame, coat: Frame, to_viewer: vec3f, occlusion: f32,
+    samples: u32, rotation: vec2f, levels: vec2f,
+) -> vec3f {
+    let wo = classical_facing(frame_to_local(base, to_viewer));
+    let width = dielectric_width(s.alpha);
+    let irradiance = occlusion * classical_irradiance(base.n) * INV_PI;
+
+    var reflected: vec3f;
+    if samples == 0u {
+        reflected = classical_split_sum(s, table, base, wo, levels.y);
+    } else {
+        reflected = classical_sampled(s, base, wo, samples, rotation, levels.x);
+    }
+    var value = classical_occlusion(wo.z, width, occlusion) * reflected;
+    if s.metallic > 0.0 && s.multiple_scattering {
+        value += s.metallic * classical_multiple_albedo(s, wo) * irradiance;
+    }
+    if s.metallic < 1.0 {
+        let strongest = max(s.dielectric_f0.x, max(s.dielectric_f0.y, s.dielectric_f0.z));
+        let left = 1.0 - dielectric_albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
+        value += (1.0 - s.metallic) * left * s.base_color * irradiance;
+    }
+    if s.coat <= 0.0 {
+        return value;
+    }
+
+    var top: Surface;
+    top.alpha = vec2f(s.coat_alpha);
+    top.dielectric_f0 = vec3f(COAT_F0);
+    top.dielectric_f90 = 1.0;
+    top.masking = s.masking;
+    let coat_wo = classical_facing(frame_to_local(coat, to_viewer));
+    var coat_light: vec3f;
+    if samples == 0u {
+        coat_light = classical_split_sum(top, 0u, coat, coat_wo, levels.y);
+    } else {
+        coat_light = classical_sampled(top, coat, coat_wo, samples, rotation, levels.x);
+    }
+    // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
+    let passed = coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
+    return value * passed * passed + s.coat * classical_occlusion(coat_wo.z, s.coat_alpha, occlusion) * coat_light;
+}
+
+// A shading normal may look away from the viewer: bring the direction back above the horizon.
+fn classical_facing(wo: vec3f) -> vec3f {
+    return normalize(vec3f(wo.xy, max(wo.z, 1e-3)));
+}
+
+// Albedo of light that bounced more than once between microfacets.
+fn classical_multiple_albedo(s: Surface, wo: vec3f) -> vec3f {
+    let mean = ggx_loss_mean(s.alpha, s.masking);
+    let f = s.fresnel_mean;
+    return f * f * (1.0 - mean) / (1.0 - f * mean) * ggx_loss(wo, s.alpha, s.masking);
+}
+
+// Share of a reflection that an ambient occlusion leaves: none is lost by a mirror, all of it by a matte surface.
+// Lagarde and de Rousiers 2014, section 4.10.2.
+fn classical_occlusion(mu: f32, alpha: f32, occlusion: f32) -> f32 {
+    return clamp(pow(mu + occlusion, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+}

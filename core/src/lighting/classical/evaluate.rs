@@ -1,0 +1,218 @@
+//! The CPU twin of `classical.wgsl`, over maps given as a trait.
+
+use glam::{Vec2, Vec3};
+
+use super::level;
+use crate::math::frame::Frame;
+use crate::math::sampling;
+use crate::surface::fresnel;
+use crate::surface::ggx;
+use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, albedo_schlick_ratio, loss, loss_mean};
+use crate::surface::layered::Surface;
+use crate::surface::{coat, dielectric};
+
+/// What the method looks up. Directions are unit vectors in world space.
+pub trait Maps {
+    /// Radiance, box-filtered at a level of the radiance cube.
+    fn radiance(&self, direction: Vec3, level: f32) -> Vec3;
+    /// Radiance filtered with the lobe of a level of the prefiltered cube.
+    fn prefiltered(&self, direction: Vec3, level: f32) -> Vec3;
+    /// Integral of radiance times cosine about a normal.
+    fn irradiance(&self, normal: Vec3) -> Vec3;
+    /// Levels of the radiance cube; its finest level has `2^(levels - 1)` texels along an edge.
+    fn radiance_levels(&self) -> f32;
+    /// Levels of the prefiltered cube.
+    fn prefiltered_levels(&self) -> f32;
+}
+
+/// How the reflection is computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Lobes {
+    /// 0 for the split sum, else visible normals drawn per pixel.
+    pub samples: u32,
+    /// Offset of the sample points on the unit torus.
+    pub rotation: Vec2,
+}
+
+/// Level whose texels are as large as the share of one of `n` samples of that density (per steradian).
+pub fn footprint(direction: Vec3, pdf: f32, n: u32, levels: f32) -> f32 {
+    let ratio = 1.0 / (n as f32 * pdf.max(1e-12) * texel(direction, levels));
+    (0.5 * ratio.max(1e-12).log2()).clamp(0.0, levels - 1.0)
+}
+
+/// Solid angle of a texel of the finest level.
+fn texel(direction: Vec3, levels: f32) -> f32 {
+    let m = direction.abs().max_element();
+    4.0 * m * m * m * (-2.0 * (levels - 1.0)).exp2()
+}
+
+/// Radiance filtered with the GGX lobe of N = V = R by `n` samples: weight D(h) cos(theta_i).
+///
+/// Karis 2013, Real Shading in Unreal Engine 4, with the footprint of Krivanek and Colbert 2008.
+pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32) -> Vec3 {
+    let frame = Frame::new(normal);
+    let levels = maps.radiance_levels();
+    let a2 = alpha * alpha;
+    let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
+    for i in 0..n {
+        let u = sampling::hammersley(i, n);
+        // Half a step in, so that no sample is wasted on u = 0.
+        let v = u.x + 0.5 / n as f32;
+        let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
+        let cos_i = 2.0 * cos2 - 1.0;
+        if cos_i <= 0.0 {
+            continue;
+        }
+        let sin_h = (1.0 - cos2).max(0.0).sqrt();
+        let sin_i = 2.0 * sin_h * cos2.sqrt();
+        let (sin_phi, cos_phi) = (std::f32::consts::TAU * u.y).sin_cos();
+        let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
+        let h = Vec3::new(sin_h, 0.0, cos2.sqrt());
+        let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
+        // One level finer than the sample's share: neighbouring footprints overlap through bilinear filtering.
+        let level = (footprint(wi, pdf, n, levels) - 1.0).max(0.0);
+        sum += cos_i * maps.radiance(wi, level);
+        weight += cos_i;
+    }
+    sum / weight.max(1e-12)
+}
+
+/// Light of the environment that the surface sends toward the viewer (unit vector, world space).
+///
+/// `table` is [`super::mean_fresnel_table`] of the surface's curve, `None` for curves `f0 + (1 - f0)(1 - x)^5`;
+/// `base` and `coat_frame` are the frames of the base layer (x along the anisotropy axis) and of the coat.
+#[allow(clippy::too_many_arguments, reason = "the argument list of the WGSL twin")]
+pub fn environment(
+    maps: &impl Maps,
+    s: &Surface,
+    table: Option<&[f32]>,
+    base: &Frame,
+    coat_frame: &Frame,
+    to_viewer: Vec3,
+    occlusion: f32,
+    lobes: Lobes,
+) -> Vec3 {
+    let wo = facing(base.to_local(to_viewer));
+    let width = dielectric::width(s.alpha);
+    let irradiance = occlusion * maps.irradiance(base.n) * std::f32::consts::FRAC_1_PI;
+    let reflected = match lobes.samples {
+        0 => split_sum(maps, s, table, base, wo),
+        _ => sampled(maps, s, base, wo, lobes),
+    };
+    let mut value = reflection_occlusion(wo.z, width, occlusion) * reflected;
+    if s.metallic > 0.0 && s.multiple_scattering {
+        value += s.metallic * multiple_albedo(s, wo) * irradiance;
+    }
+    if s.metallic < 1.0 {
+        let strongest = s.dielectric_f0.max_element();
+        let left = 1.0 - dielectric::albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
+        value += (1.0 - s.metallic) * left * s.base_color * irradiance;
+    }
+    if s.coat <= 0.0 {
+        return value;
+    }
+    let top = Surface {
+        metallic: 0.0,
+        alpha: Vec2::splat(s.coat_alpha),
+        dielectric_f0: Vec3::splat(coat::F0),
+        dielectric_f90: 1.0,
+        ..*s
+    };
+    let coat_wo = facing(coat_frame.to_local(to_viewer));
+    let coat_light = match lobes.samples {
+        0 => split_sum(maps, &top, None, coat_frame, coat_wo),
+        _ => sampled(maps, &top, coat_frame, coat_wo, lobes),
+    };
+    // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
+    let passed = coat::transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
+    value * passed * passed + s.coat * reflection_occlusion(coat_wo.z, s.coat_alpha, occlusion) * coat_light
+}
+
+/// A shading normal may look away from the viewer: brings the direction back above the horizon.
+fn facing(wo: Vec3) -> Vec3 {
+    Vec3::new(wo.x, wo.y, wo.z.max(1e-3)).normalize()
+}
+
+fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame, wo: Vec3) -> Vec3 {
+    let wo_world = base.to_world(wo);
+    let n = bent_normal(base, wo_world, s.alpha);
+    let direction = 2.0 * n.dot(wo_world) * n - wo_world;
+    let roughness = (s.alpha.x * s.alpha.y).sqrt().sqrt();
+    let width = dielectric::width(s.alpha);
+    let e = 1.0 - loss(wo, s.alpha, s.masking);
+    let ratio = albedo_schlick_ratio(wo.z, width, s.masking);
+    let schlick = s.dielectric_f0.lerp(Vec3::splat(s.dielectric_f90), ratio);
+    let metal = match table {
+        None => s.fresnel.f0().lerp(Vec3::ONE, ratio),
+        Some(table) => mean_fresnel(table, wo.z, width),
+    };
+    let albedo = e * schlick.lerp(metal, s.metallic);
+    albedo * maps.prefiltered(direction, level(roughness, maps.prefiltered_levels()))
+}
+
+/// Looks up the three grids of [`super::mean_fresnel_table`].
+fn mean_fresnel(table: &[f32], mu: f32, alpha: f32) -> Vec3 {
+    let (width, height) = (ALBEDO_MU as usize, ALBEDO_ALPHA as usize);
+    let y = (alpha.clamp(ggx::ALPHA_MIN, 1.0).sqrt().sqrt() - ALBEDO_ROOT_MIN) / (1.0 - ALBEDO_ROOT_MIN);
+    let (fx, fy) = (mu.clamp(0.0, 1.0).sqrt() * (width - 1) as f32, y.clamp(0.0, 1.0) * (height - 1) as f32);
+    let (i, j) = ((fx as usize).min(width - 2), (fy as usize).min(height - 2));
+    let (tx, ty) = (fx - i as f32, fy - j as f32);
+    let at = |c: usize, i: usize, j: usize| table.get((c * height + j) * width + i).copied().unwrap_or(0.0);
+    let channel = |c| {
+        let row = |j| at(c, i, j) + (at(c, i + 1, j) - at(c, i, j)) * tx;
+        row(j) + (row(j + 1) - row(j)) * ty
+    };
+    Vec3::new(channel(0), channel(1), channel(2))
+}
+
+fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) -> Vec3 {
+    let g1 = ggx::masking(wo, s.alpha).max(1e-12);
+    let mut sum = Vec3::ZERO;
+    for i in 0..lobes.samples {
+        let u = (sampling::hammersley(i, lobes.samples) + lobes.rotation).fract();
+        let wm = ggx::sample_wm(wo, s.alpha, u);
+        let wi = 2.0 * wo.dot(wm) * wm - wo;
+        if wi.z <= 0.0 {
+            continue;
+        }
+        let pdf = ggx::pdf(wo, wi, s.alpha);
+        let weight = ggx::shadowing_masking(wo, wi, s.alpha, s.masking) / g1;
+        let direction = base.to_world(wi);
+        let level = footprint(direction, pdf, lobes.samples, maps.radiance_levels());
+        sum += weight * shared_fresnel(s, wi.dot(wm)) * maps.radiance(direction, level);
+    }
+    sum / lobes.samples as f32
+}
+
+/// Fresnel of the reflection that metal and dielectric share.
+fn shared_fresnel(s: &Surface, cos_theta: f32) -> Vec3 {
+    let dielectric = fresnel::schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
+    s.metallic * s.fresnel.eval(cos_theta) + (1.0 - s.metallic) * dielectric
+}
+
+/// Normal bent toward the viewer about the axis along which the lobe is wide, which stretches the one lookup of the
+/// split sum. After McAuley 2015, Rendering the World of Far Cry 4.
+fn bent_normal(base: &Frame, wo_world: Vec3, alpha: Vec2) -> Vec3 {
+    let axis = if alpha.x >= alpha.y { base.t } else { base.b };
+    let (wide, narrow) = (alpha.max_element(), alpha.min_element());
+    let toward = axis.cross(wo_world).cross(axis);
+    if toward.length_squared() < 1e-8 || wide <= narrow {
+        return base.n;
+    }
+    let amount = (1.0 - narrow / wide) * (4.0 * wide).min(1.0);
+    base.n.lerp(toward.normalize(), 0.5 * amount).normalize()
+}
+
+/// Albedo of light that bounced more than once between microfacets.
+fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
+    let mean = loss_mean(s.alpha, s.masking);
+    let f = s.fresnel_mean;
+    f * f * (1.0 - mean) / (Vec3::ONE - f * mean) * loss(wo, s.alpha, s.masking)
+}
+
+/// Share of a reflection that an ambient occlusion leaves: a mirror loses little, a matte surface all of it.
+///
+/// Lagarde and de Rousiers 2014, Moving Frostbite to Physically Based Rendering, section 4.10.2.
+fn reflection_occlusion(mu: f32, alpha: f32, occlusion: f32) -> f32 {
+    ((mu + occlusion).powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + occlusion).clamp(0.0, 1.0)
+}

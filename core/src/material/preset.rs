@@ -1,0 +1,198 @@
+//! Metal presets: measured optical constants, and the reflectance curves made from them.
+//!
+//! A preset holds n and k over wavelength with their source, one file each in `presets/metals`. What renders is made
+//! here by spectral integration; nothing in a file is already a colour.
+
+mod check;
+mod library;
+
+pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
+pub use library::{find, library};
+
+use std::path::{Path, PathBuf};
+
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::color::rgb;
+use crate::color::spectrum::interpolate;
+use crate::file::{FileError, read_bounded};
+use crate::surface::fresnel::{Fresnel, TABLE_SIZE, exact};
+
+/// Names of the curves that [`Preset::fresnel`] makes.
+pub const FORMS: [&str; 3] = ["spectral", "rescaled", "schlick"];
+
+/// Largest preset file that is read.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// Measured optical constants of a metal, with where they come from. Fields that this version does not know are kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Preset {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// Of the format, [`VERSION`].
+    pub version: u32,
+    /// Unique name such as `Au`: letters, digits, `.`, `-`, `_`.
+    pub id: String,
+    /// Name for people.
+    pub name: String,
+    /// Chemical symbol or formula, where there is one.
+    #[serde(default)]
+    pub symbol: Option<String>,
+    /// Words to find it by.
+    #[serde(default)]
+    pub tags: Vec<String>,
+    /// Who measured it, and where the numbers were taken from.
+    pub source: Source,
+    /// What was measured, and how the table was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+    /// What speaks against trusting the numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warning: Option<String>,
+    /// Wavelengths in vacuum, nm, strictly increasing.
+    pub wavelength_nm: Vec<f64>,
+    /// Real part of the refractive index at each wavelength, above 0.
+    pub n: Vec<f64>,
+    /// Extinction coefficient at each wavelength, 0 or more (index n + ik).
+    pub k: Vec<f64>,
+    /// Fields of other versions.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+/// Where a measurement comes from. Absent where the source of the table does not say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// Authors of the measurement.
+    #[serde(default)]
+    pub author: Option<String>,
+    /// Year of publication.
+    #[serde(default)]
+    pub year: Option<u32>,
+    /// Journal with volume and pages, or report.
+    #[serde(default)]
+    pub journal: Option<String>,
+    /// Digital object identifier, without a resolver's address.
+    #[serde(default)]
+    pub doi: Option<String>,
+    /// Where the numbers of the table were copied from.
+    #[serde(default)]
+    pub table: Option<String>,
+    /// Licence of that table.
+    #[serde(default)]
+    pub licence: Option<String>,
+    /// More, such as title and address.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+/// Why there is no preset. Its text names file, field and remedy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PresetError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is not JSON, or a field is missing or of the wrong kind.
+    #[error("{}: {reason}; write it as presets/README.md shows", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// Field and place.
+        reason: String,
+    },
+    /// A field has a value that no metal has.
+    #[error("{origin}: field `{field}` {reason}; {remedy}")]
+    Field {
+        /// File or id.
+        origin: String,
+        /// Name of the field.
+        field: &'static str,
+        /// What is wrong with it.
+        reason: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// No preset of that name.
+    #[error("no preset `{wanted}`; {hint}, or name a .json file")]
+    Unknown {
+        /// What was asked for.
+        wanted: String,
+        /// Names that come near, or all.
+        hint: String,
+    },
+    /// No curve of that name.
+    #[error("no Fresnel form `{0}`; there are spectral, rescaled, schlick")]
+    Form(String),
+}
+
+impl Preset {
+    /// Reads and checks a file.
+    pub fn read(path: &Path) -> Result<Preset, PresetError> {
+        let bytes = read_bounded(path, MAX_BYTES)?;
+        let json = |reason: String| PresetError::Json { path: path.into(), reason };
+        let text = String::from_utf8(bytes).map_err(|e| json(format!("is not UTF-8 text ({e})")))?;
+        // Editors on Windows put a byte order mark in front, which JSON does not know.
+        let preset: Preset =
+            serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|e| json(e.to_string()))?;
+        preset.check(&path.display().to_string())?;
+        Ok(preset)
+    }
+
+    /// Index at a wavelength in nm: n and k, each linear between its entries.
+    pub fn index_at(&self, wavelength_nm: f64) -> (f64, f64) {
+        let at = |values: &[f64]| interpolate(&self.wavelength_nm, values, wavelength_nm);
+        (at(&self.n), at(&self.k))
+    }
+
+    /// Exact reflectance at one wavelength, 0 to 1.
+    pub fn reflectance(&self, wavelength_nm: f64, cos_theta: f64) -> f64 {
+        let (n, k) = self.index_at(wavelength_nm);
+        exact(n, k, cos_theta)
+    }
+
+    /// Exact reflectance as linear Rec.709 under D65, not clamped: saturated metals leave [0, 1] (the red of gold is
+    /// 1.037).
+    pub fn unclamped(&self, cos_theta: f64) -> DVec3 {
+        rgb::integrate(|nm| self.reflectance(nm, cos_theta))
+    }
+
+    /// [`Preset::unclamped`] at normal incidence.
+    pub fn unclamped_f0(&self) -> DVec3 {
+        self.unclamped(1.0)
+    }
+
+    /// The reflectance curve for rendering, in [0, 1]: one of [`FORMS`], see [`Fresnel`].
+    ///
+    /// `spectral` and `rescaled` integrate the exact reflectance at each wavelength; `schlick` integrates
+    /// `((n - 1) / (n + 1))^2`. Averaged n and k are never used: they can be further off than any approximation.
+    pub fn fresnel(&self, form: &str) -> Result<Fresnel, PresetError> {
+        match form {
+            "spectral" => {
+                let mut table = Box::new([Vec3::ZERO; TABLE_SIZE]);
+                for (i, entry) in table.iter_mut().enumerate() {
+                    *entry = clamped(self.unclamped(i as f64 / (TABLE_SIZE - 1) as f64));
+                }
+                Ok(Fresnel::Spectral { table })
+            }
+            "rescaled" => Ok(Fresnel::Rescaled { f0: clamped(self.unclamped_f0()) }),
+            "schlick" => {
+                let f0 = |nm: f64| {
+                    let (n, _) = self.index_at(nm);
+                    ((n - 1.0) / (n + 1.0)).powi(2)
+                };
+                Ok(Fresnel::Schlick { f0: clamped(rgb::integrate(f0)) })
+            }
+            other => Err(PresetError::Form(other.into())),
+        }
+    }
+}
+
+/// Reflectance that a renderer may use: no channel gives off more light than it gets.
+fn clamped(reflectance: DVec3) -> Vec3 {
+    reflectance.clamp(DVec3::ZERO, DVec3::ONE).as_vec3()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,70 @@
+//! What a preset must satisfy.
+
+use super::{Preset, PresetError};
+
+/// The `format` of a preset.
+pub const FORMAT: &str = "burnish-metal";
+
+/// The `version` that is read.
+pub const VERSION: u32 = 1;
+
+/// Wavelengths that a table must reach, nm. Beyond them the ends are held: of the light of D65 that enters red, green
+/// and blue, less than 0.5 % each lies outside.
+pub const REQUIRED_RANGE_NM: (f64, f64) = (400.0, 700.0);
+
+impl Preset {
+    /// Refuses what cannot be a metal; `origin` (file or id) starts the message.
+    pub fn check(&self, origin: &str) -> Result<(), PresetError> {
+        let fault =
+            |field, reason: String, remedy| Err(PresetError::Field { origin: origin.into(), field, reason, remedy });
+        if self.format != FORMAT {
+            return fault("format", format!("is `{}`", self.format), "set it to `burnish-metal`");
+        }
+        if self.version != VERSION {
+            return fault("version", format!("is {}", self.version), "this program reads version 1");
+        }
+        let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+        if self.id.is_empty() || self.id.len() > 64 || self.id.starts_with('.') || !self.id.chars().all(allowed) {
+            let remedy = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
+            return fault("id", format!("is `{}`", self.id), remedy);
+        }
+        if self.name.trim().is_empty() {
+            return fault("name", "is empty".into(), "name the metal");
+        }
+        self.check_table(origin)
+    }
+
+    /// Lengths, order, range and values of the table.
+    fn check_table(&self, origin: &str) -> Result<(), PresetError> {
+        let fault =
+            |field, reason: String, remedy| Err(PresetError::Field { origin: origin.into(), field, reason, remedy });
+        let count = self.wavelength_nm.len();
+        for (field, values) in [("n", &self.n), ("k", &self.k)] {
+            if values.len() != count {
+                let reason = format!("has {} values for {count} wavelengths", values.len());
+                return fault(field, reason, "give one value per wavelength");
+            }
+        }
+        let mut last = 0.0;
+        for (i, &nm) in self.wavelength_nm.iter().enumerate() {
+            if !(nm.is_finite() && nm > last) {
+                let reason = format!("is {nm} at entry {i}, after {last}");
+                return fault("wavelength_nm", reason, "list positive wavelengths in nm, each above the one before");
+            }
+            last = nm;
+        }
+        let (from, to) = REQUIRED_RANGE_NM;
+        let first = self.wavelength_nm.first().copied().unwrap_or(f64::INFINITY);
+        if first > from || last < to {
+            let reason = format!("covers {first} to {last} nm");
+            return fault("wavelength_nm", reason, "cover 400 to 700 nm at least, better 380 to 780 nm");
+        }
+        if let Some((i, n)) = self.n.iter().enumerate().find(|(_, n)| !(n.is_finite() && **n > 0.0)) {
+            return fault("n", format!("is {n} at entry {i}"), "give finite values above 0");
+        }
+        if let Some((i, k)) = self.k.iter().enumerate().find(|(_, k)| !(k.is_finite() && **k >= 0.0)) {
+            return fault("k", format!("is {k} at entry {i}"), "give finite values of 0 or more (the index is n + ik)");
+        }
+        Ok(())
+    }
+}

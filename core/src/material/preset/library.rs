@@ -1,0 +1,81 @@
+//! The presets that come with the program.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use super::{Preset, PresetError};
+
+/// Files of `presets/metals`, sorted by name. A test holds the list and the folder together.
+pub(super) const FILES: [(&str, &str); 12] = [
+    ("Ag.json", include_str!("../../../../presets/metals/Ag.json")),
+    ("Al.json", include_str!("../../../../presets/metals/Al.json")),
+    ("Au.json", include_str!("../../../../presets/metals/Au.json")),
+    ("Cr.json", include_str!("../../../../presets/metals/Cr.json")),
+    ("Cu.json", include_str!("../../../../presets/metals/Cu.json")),
+    ("CuZn.json", include_str!("../../../../presets/metals/CuZn.json")),
+    ("Fe.json", include_str!("../../../../presets/metals/Fe.json")),
+    ("Ni.json", include_str!("../../../../presets/metals/Ni.json")),
+    ("Pt.json", include_str!("../../../../presets/metals/Pt.json")),
+    ("StainlessSteel-austenitic.json", include_str!("../../../../presets/metals/StainlessSteel-austenitic.json")),
+    ("Ti.json", include_str!("../../../../presets/metals/Ti.json")),
+    ("W.json", include_str!("../../../../presets/metals/W.json")),
+];
+
+/// Parsed once. A file that does not parse would be left out; a test shows that each does.
+static LIBRARY: LazyLock<Vec<Preset>> = LazyLock::new(|| {
+    let mut presets: Vec<Preset> = FILES.iter().filter_map(|(_, text)| serde_json::from_str(text).ok()).collect();
+    presets.sort_by(|a, b| a.id.cmp(&b.id));
+    presets
+});
+
+/// The presets that come with the program, sorted by id.
+pub fn library() -> &'static [Preset] {
+    &LIBRARY
+}
+
+/// Finds a preset by id (exactly, else without regard to case), by name, or reads the file if the text ends in `.json`.
+pub fn find(id_or_path: &str) -> Result<Preset, PresetError> {
+    let wanted = id_or_path.trim();
+    if wanted.to_ascii_lowercase().ends_with(".json") {
+        return Preset::read(Path::new(wanted));
+    }
+    let lower = wanted.to_lowercase();
+    let by_id = library().iter().find(|p| p.id == wanted);
+    let found = by_id
+        .or_else(|| library().iter().find(|p| p.id.to_lowercase() == lower))
+        .or_else(|| library().iter().find(|p| p.name.to_lowercase() == lower));
+    found.cloned().ok_or_else(|| PresetError::Unknown { wanted: wanted.into(), hint: hint(&lower) })
+}
+
+/// Ids whose id or name is like the text: begins as it does, contains it, or is at most two edits away; else all.
+fn hint(lower: &str) -> String {
+    let like = |text: &str| {
+        let text = text.to_lowercase();
+        // One-letter texts are within two edits of every short id.
+        let contained = lower.chars().count() > 1 && text.contains(lower);
+        contained || (lower.chars().count() > 3 && edits(&text, lower) <= 2)
+    };
+    let near: Vec<&str> = library().iter().filter(|p| like(&p.id) || like(&p.name)).map(|p| p.id.as_str()).collect();
+    if near.is_empty() {
+        let all: Vec<&str> = library().iter().map(|p| p.id.as_str()).collect();
+        format!("there are {}", all.join(", "))
+    } else {
+        format!("did you mean {}?", near.join(" or "))
+    }
+}
+
+/// Insertions, deletions and replacements that turn one text into the other (Levenshtein distance).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    // Distances of the part of `a` read so far to every beginning of `b`.
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut next = vec![i + 1];
+        for (j, cb) in b.iter().enumerate() {
+            let replaced = row[j] + usize::from(ca != *cb);
+            next.push(replaced.min(row[j + 1] + 1).min(next[j] + 1));
+        }
+        row = next;
+    }
+    row[b.len()]
+}

@@ -1,0 +1,83 @@
+// Constants, frames, octahedral unit vectors and point sets.
+
+const PI: f32 = 3.14159265358979;
+const INV_PI: f32 = 0.318309886183791;
+
+// An orthonormal right-handed basis: tangent, bitangent, normal.
+struct Frame {
+    t: vec3f,
+    b: vec3f,
+    n: vec3f,
+}
+
+// Some frame about the unit vector n, without a branch. Duff et al. 2017.
+fn frame_new(n: vec3f) -> Frame {
+    let s = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (s + n.z);
+    let c = n.x * n.y * a;
+    return Frame(vec3f(1.0 + s * n.x * n.x * a, s * c, -s * n.x), vec3f(c, s + n.y * n.y * a, -n.y), n);
+}
+
+fn frame_to_local(frame: Frame, v: vec3f) -> vec3f {
+    return vec3f(dot(v, frame.t), dot(v, frame.b), dot(v, frame.n));
+}
+
+fn frame_to_world(frame: Frame, v: vec3f) -> vec3f {
+    return frame.t * v.x + frame.b * v.y + frame.n * v.z;
+}
+
+// Unit vector to the square [-1, 1]^2; +z is the centre. Cigolle et al. 2014.
+fn oct_encode(v: vec3f) -> vec2f {
+    let p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
+    let folded = (1.0 - abs(p.yx)) * select(vec2f(-1.0), vec2f(1.0), p >= vec2f(0.0));
+    return select(folded, p, v.z >= 0.0);
+}
+
+fn oct_decode(p: vec2f) -> vec3f {
+    let z = 1.0 - abs(p.x) - abs(p.y);
+    let folded = (1.0 - abs(p.yx)) * select(vec2f(-1.0), vec2f(1.0), p >= vec2f(0.0));
+    return normalize(vec3f(select(folded, p, z >= 0.0), z));
+}
+
+// The square [0, 1)^2 to the unit disk, keeping areas and neighbours. Shirley and Chiu 1997.
+fn sampling_disk(u: vec2f) -> vec2f {
+    let p = 2.0 * u - 1.0;
+    if p.x == 0.0 && p.y == 0.0 {
+        return vec2f(0.0);
+    }
+    if abs(p.x) > abs(p.y) {
+        let phi = 0.25 * PI * (p.y / p.x);
+        return p.x * vec2f(cos(phi), sin(phi));
+    }
+    let phi = 0.5 * PI - 0.25 * PI * (p.x / p.y);
+    return p.y * vec2f(cos(phi), sin(phi));
+}
+
+// Direction with density cos(theta) / pi about z.
+fn sampling_cosine_hemisphere(u: vec2f) -> vec3f {
+    let d = sampling_disk(u);
+    return vec3f(d, sqrt(max(0.0, 1.0 - dot(d, d))));
+}
+
+// Bits of i mirrored at the binary point, in [0, 1).
+fn sampling_radical_inverse(i: u32) -> f32 {
+    // Only 24 bits fit an f32 below one.
+    return f32(reverseBits(i) >> 8u) * (1.0 / 16777216.0);
+}
+
+// Point i of n in [0, 1)^2.
+fn sampling_hammersley(i: u32, n: u32) -> vec2f {
+    return vec2f(f32(i) / f32(n), sampling_radical_inverse(i));
+}
+
+// Hash of 32 bits. Jarzynski and Olano 2020.
+fn sampling_pcg(v: u32) -> u32 {
+    let state = v * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// Hash as a number in [0, 1).
+fn sampling_unit(hash: u32) -> f32 {
+    return f32(hash >> 8u) * (1.0 / 16777216.0);
+}

@@ -1,0 +1,124 @@
+//! Reading an equirectangular environment: directions, texels, solid angles.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{DVec3, Vec2, Vec3};
+
+use super::Environment;
+
+impl Environment {
+    /// A map from its parts, unrotated, at strength 1. Rows from the top; `texels` must hold `width * height` colours.
+    pub fn new(name: &str, width: u32, height: u32, texels: Vec<Vec3>) -> Environment {
+        debug_assert_eq!(texels.len(), width as usize * height as usize);
+        Environment { name: name.into(), width, height, texels, rotation: 0.0, strength: 1.0 }
+    }
+
+    /// Where a world direction is seen, in [0, 1]^2 from the top left.
+    pub fn uv_from_direction(&self, world: Vec3) -> Vec2 {
+        let (sin, cos) = self.rotation.sin_cos();
+        let d = Vec3::new(cos * world.x - sin * world.z, world.y, sin * world.x + cos * world.z);
+        Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
+    }
+
+    /// The world direction that is seen at a point of the map.
+    pub fn direction_from_uv(&self, uv: Vec2) -> Vec3 {
+        let (sin_phi, cos_phi) = ((uv.x - 0.5) * TAU).sin_cos();
+        let (sin_theta, cos_theta) = (uv.y * PI).sin_cos();
+        let d = Vec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi);
+        let (sin, cos) = self.rotation.sin_cos();
+        Vec3::new(cos * d.x + sin * d.z, d.y, -sin * d.x + cos * d.z)
+    }
+
+    /// Radiance from a world direction, strength included: bilinear, wrapping around, stopping at the poles.
+    pub fn radiance(&self, world: Vec3) -> Vec3 {
+        let uv = self.uv_from_direction(world);
+        let p = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
+        let low = p.floor();
+        let f = p - low;
+        let (x0, x1) = (self.column(low.x as i64), self.column(low.x as i64 + 1));
+        let (y0, y1) = (self.row(low.y as i64), self.row(low.y as i64 + 1));
+        let top = self.texel(x0, y0).lerp(self.texel(x1, y0), f.x);
+        let bottom = self.texel(x0, y1).lerp(self.texel(x1, y1), f.x);
+        self.strength * top.lerp(bottom, f.y)
+    }
+
+    fn column(&self, x: i64) -> usize {
+        x.rem_euclid(i64::from(self.width.max(1))) as usize
+    }
+
+    fn row(&self, y: i64) -> usize {
+        y.clamp(0, i64::from(self.height.max(1)) - 1) as usize
+    }
+
+    fn texel(&self, x: usize, y: usize) -> Vec3 {
+        self.texels.get(y * self.width as usize + x).copied().unwrap_or(Vec3::ZERO)
+    }
+
+    /// Calls `visit` with centre direction (world), radiance (strength included) and solid angle of `n` by `n` parts of
+    /// every texel of the rows `rows`. The solid angles of the whole map sum to 4 pi.
+    pub fn for_each_part(&self, rows: std::ops::Range<u32>, n: u32, mut visit: impl FnMut(Vec3, DVec3, f64)) {
+        let (width, height) = (f64::from(self.width * n), f64::from(self.height * n));
+        for y in rows.start * n..rows.end * n {
+            let edge = |i: u32| (std::f64::consts::PI * f64::from(i) / height).cos();
+            let solid_angle = (edge(y) - edge(y + 1)) * std::f64::consts::TAU / width;
+            for x in 0..self.width * n {
+                let uv = Vec2::new(((f64::from(x) + 0.5) / width) as f32, ((f64::from(y) + 0.5) / height) as f32);
+                let direction = self.direction_from_uv(uv);
+                visit(direction, self.radiance(direction).as_dvec3(), solid_angle);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(rotation: f32) -> Environment {
+        let texels = (0..32 * 16).map(|i| Vec3::new(i as f32, (i % 32) as f32, 1.0)).collect();
+        Environment { rotation, ..Environment::new("test", 32, 16, texels) }
+    }
+
+    #[test]
+    fn the_centre_of_the_map_is_minus_z_and_u_grows_to_the_right() {
+        let map = map(0.0);
+        assert!((map.direction_from_uv(Vec2::splat(0.5)) - Vec3::NEG_Z).length() < 1e-6);
+        assert!((map.direction_from_uv(Vec2::new(0.75, 0.5)) - Vec3::X).length() < 1e-6);
+        assert!((map.direction_from_uv(Vec2::new(0.3, 0.0)) - Vec3::Y).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_quarter_turn_brings_what_was_ahead_to_the_left() {
+        let turned = map(std::f32::consts::FRAC_PI_2);
+        assert!((turned.direction_from_uv(Vec2::splat(0.5)) - Vec3::NEG_X).length() < 1e-6);
+    }
+
+    #[test]
+    fn directions_and_coordinates_are_inverse_to_each_other() {
+        for rotation in [0.0, 0.7, -2.0] {
+            let map = map(rotation);
+            for i in 0..200 {
+                let uv = Vec2::new((i as f32 * 0.618).fract(), 0.02 + 0.96 * (i as f32 * 0.414).fract());
+                let back = map.uv_from_direction(map.direction_from_uv(uv));
+                assert!((back - uv).length() < 1e-5, "{uv} came back as {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn texel_centres_return_the_texel() {
+        let map = map(0.4);
+        for (x, y) in [(0, 0), (31, 15), (7, 9)] {
+            let uv = Vec2::new((x as f32 + 0.5) / 32.0, (y as f32 + 0.5) / 16.0);
+            let got = map.radiance(map.direction_from_uv(uv));
+            assert!((got - map.texels[y * 32 + x]).length() < 2e-3, "{got} at {x},{y}");
+        }
+    }
+
+    #[test]
+    fn solid_angles_sum_to_the_sphere() {
+        let mut sum = 0.0;
+        map(0.0).for_each_part(0..16, 2, |_, _, solid_angle| sum += solid_angle);
+        assert!((sum - 4.0 * std::f64::consts::PI).abs() < 1e-9, "{sum}");
+    }
+}

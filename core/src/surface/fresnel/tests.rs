@@ -1,0 +1,163 @@
+use glam::Vec3;
+
+use super::*;
+use crate::math::quadrature::GaussLegendre;
+use crate::math::sampling::Random;
+
+const REFERENCE: &str = include_str!("../../../../tests/data/reference/fresnel_exact.csv");
+/// The reference values carry twelve digits.
+const F64_ERROR: f64 = 1e-10;
+const F32_ERROR: f64 = 1e-6;
+
+/// `(n, k, cos_theta, reflectance)` of every reference value.
+fn reference() -> Vec<[f64; 4]> {
+    let rows: Vec<[f64; 4]> = REFERENCE
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let numbers: Vec<f64> = line.split(',').skip(1).map(|x| x.parse().unwrap()).collect();
+            numbers.try_into().unwrap()
+        })
+        .collect();
+    assert!(rows.len() > 100 && rows.iter().any(|row| row[2] == 0.0));
+    rows
+}
+
+/// Every form once.
+fn forms() -> Vec<Fresnel> {
+    let (n, k) = (Vec3::new(0.18, 0.42, 1.37), Vec3::new(3.42, 2.35, 1.77));
+    let curve = |i: usize| {
+        let x = i as f64 / (TABLE_SIZE - 1) as f64;
+        Vec3::from_array([0, 1, 2].map(|c| exact(n[c].into(), k[c].into(), x) as f32))
+    };
+    vec![
+        Fresnel::rescaled(n, k),
+        Fresnel::schlick(n),
+        Fresnel::Conductor { n, k },
+        Fresnel::Spectral { table: Box::new(std::array::from_fn(curve)) },
+    ]
+}
+
+#[test]
+fn the_exact_conductor_meets_the_reference_in_f64_and_f32_at_every_angle() {
+    let (mut worst64, mut worst32) = (0.0f64, 0.0f64);
+    for [n, k, x, reflectance] in reference() {
+        worst64 = worst64.max((exact(n, k, x) - reflectance).abs());
+        worst32 = worst32.max((f64::from(conductor(n as f32, k as f32, x as f32)) - reflectance).abs());
+    }
+    println!("largest error: f64 {worst64:.1e}, f32 {worst32:.1e}");
+    assert!(worst64 <= F64_ERROR, "f64 {worst64:e}");
+    assert!(worst32 <= F32_ERROR, "f32 {worst32:e}");
+}
+
+#[test]
+fn the_f32_conductor_stays_near_the_truth_where_the_root_cancels() {
+    let mut random = Random::new(5);
+    let mut worst = 0.0f64;
+    for _ in 0..500_000 {
+        let u = random.point3();
+        let (n, k, x) = (0.5 * u.x, 10.0 * u.y, u.z);
+        // Both sides see the same index: the floor of n is part of the f32 form.
+        let truth = exact(n.max(INDEX_MIN).into(), k.into(), x.into());
+        worst = worst.max((f64::from(conductor(n, k, x)) - truth).abs());
+    }
+    println!("largest error: {worst:.1e}");
+    assert!(worst <= F32_ERROR, "{worst:e}");
+}
+
+#[test]
+fn without_extinction_a_conductor_is_a_dielectric() {
+    for eta in [0.5f32, 0.9, 1.0, 1.33, 1.5, 2.4, 4.0] {
+        for i in 0..=100 {
+            let x = i as f32 / 100.0;
+            // Total reflection begins with infinite slope: there f32 tells the two forms apart.
+            let tolerance = if eta < 1.0 { 2e-4 } else { F32_ERROR };
+            // 0 / 0 for an index of one: the conductor says 1, the dielectric takes it for total reflection.
+            let truth = exact(eta.into(), 0.0, x.into());
+            assert!((f64::from(dielectric(eta, x)) - truth).abs() < tolerance, "dielectric {eta} {x}");
+            assert!((f64::from(conductor(eta, 0.0, x)) - truth).abs() < tolerance, "conductor {eta} {x}");
+        }
+    }
+}
+
+#[test]
+fn at_brewsters_angle_only_one_polarisation_is_reflected() {
+    for eta in [1.33f64, 1.5, 2.4] {
+        // tan = eta; there Rs = ((1 - eta^2) / (1 + eta^2))^2 and Rp = 0.
+        let x = 1.0 / (1.0 + eta * eta).sqrt();
+        let rs = ((1.0 - eta * eta) / (1.0 + eta * eta)).powi(2);
+        assert!((exact(eta, 0.0, x) - 0.5 * rs).abs() < 1e-12);
+        assert!((f64::from(dielectric(eta as f32, x as f32)) - 0.5 * rs).abs() < F32_ERROR);
+    }
+}
+
+#[test]
+fn by_snells_law_both_sides_reflect_alike_and_beyond_the_critical_angle_all_is_reflected() {
+    for eta in [1.33f32, 1.5, 2.4] {
+        for i in 1..=100 {
+            let x = i as f32 / 100.0;
+            // sin_t = sin_i / eta.
+            let transmitted = (1.0 - (1.0 - x * x) / (eta * eta)).sqrt();
+            let (outside, inside) = (dielectric(eta, x), dielectric(1.0 / eta, transmitted));
+            // Near the critical angle the inner cosine has lost digits.
+            assert!((outside - inside).abs() < 1e-4, "{eta} {x}: {outside} {inside}");
+        }
+        let critical = (1.0 - 1.0 / (eta * eta)).sqrt();
+        assert_eq!(dielectric(1.0 / eta, critical - 1e-3), 1.0);
+        assert!(dielectric(1.0 / eta, critical + 1e-3) < 1.0);
+    }
+}
+
+#[test]
+fn every_form_stays_in_range_and_is_one_at_grazing() {
+    for fresnel in forms() {
+        for i in 0..=1000 {
+            let value = fresnel.eval(i as f32 / 1000.0);
+            assert!(value.cmpge(Vec3::ZERO).all() && value.cmple(Vec3::ONE).all(), "{fresnel:?}");
+        }
+        assert!(fresnel.eval(0.0).distance(Vec3::ONE) < 1e-6);
+        assert_eq!(fresnel.f0(), fresnel.eval(1.0));
+    }
+}
+
+#[test]
+fn all_forms_of_a_metal_but_schlick_agree_at_normal_incidence() {
+    let [rescaled, schlick, conductor, spectral] = forms().try_into().unwrap();
+    assert!(rescaled.f0().distance(conductor.f0()) < 1e-6);
+    assert!(spectral.f0().distance(conductor.f0()) < 1e-6);
+    // Schlick's F0 of a metal is far too low, which is why it is the baseline that fails.
+    assert!(conductor.f0().y - schlick.f0().y > 0.5);
+    for i in 0..=300 {
+        let x = i as f32 / 300.0;
+        // h^2 F'' / 8 of the linear table.
+        assert!(spectral.eval(x).distance(conductor.eval(x)) < 3e-4, "{x}");
+    }
+}
+
+#[test]
+fn the_mean_is_the_cosine_weighted_integral() {
+    let rule = GaussLegendre::new(400);
+    for fresnel in forms() {
+        let mean = fresnel.mean();
+        for channel in 0..3 {
+            let integral = rule.integrate(0.0, 1.0, |x| 2.0 * x * f64::from(fresnel.eval(x as f32)[channel]));
+            assert!((f64::from(mean[channel]) - integral).abs() < 2e-6, "{fresnel:?} {integral} {mean}");
+        }
+    }
+}
+
+#[test]
+fn senseless_input_gives_a_number_in_range() {
+    let values = [0.0, -1.0, 1e-30, 1.0, 1e9, f32::MAX, f32::INFINITY, f32::NAN];
+    for n in values {
+        for k in values {
+            for x in [-1.0, 0.0, 1e-20, 0.5, 1.0, 2.0] {
+                let fresnel = Fresnel::Conductor { n: Vec3::splat(n), k: Vec3::splat(k) };
+                let value = fresnel.eval(x).x;
+                assert!((0.0..=1.0).contains(&value), "n {n} k {k} cos {x}: {value}");
+            }
+        }
+    }
+    // No index at all is a surface that reflects everything.
+    assert_eq!(exact(0.0, 0.0, 1.0), 1.0);
+}

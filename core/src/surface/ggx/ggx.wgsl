@@ -1,0 +1,232 @@
+// GGX microfacets: local frame with z = n, alpha = (along x, along y). The pass supplies ggx_albedo_entry(index).
+
+// Below this width the surface is a mirror; evaluation stays at it.
+const GGX_ALPHA_MIN: f32 = 1e-3;
+// Smith masking: heights of both directions correlated, or independent.
+const GGX_CORRELATED: u32 = 0u;
+const GGX_SEPARABLE: u32 = 1u;
+// Nodes of the albedo tables over the cosine and over either width.
+const GGX_ALBEDO_MU: u32 = 24u;
+const GGX_ALBEDO_ALPHA: u32 = 16u;
+// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss / alpha^2
+// over both widths, the Schlick ratio over (width, cosine), the mean Schlick albedo; the last named runs fastest.
+const GGX_ALBEDO_LOSS_MEAN: u32 = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_SCHLICK: u32 = GGX_ALBEDO_LOSS_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA;
+// alpha_min^(1/4), where the alpha axis of the tables starts.
+const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
+// How far the slopes across the view are narrowed by those along it.
+const GGX_ALBEDO_ANISOTROPY: f32 = 0.42;
+
+fn ggx_clamp_alpha(alpha: vec2f) -> vec2f {
+    return clamp(alpha, vec2f(GGX_ALPHA_MIN), vec2f(1.0));
+}
+
+// Density of microfacet normals per steradian and projected area.
+fn ggx_distribution(wm: vec3f, alpha: vec2f) -> f32 {
+    if wm.z <= 0.0 {
+        return 0.0;
+    }
+    let a = ggx_clamp_alpha(alpha);
+    let area = a.x * a.y;
+    let v = vec3f(wm.x * a.y, wm.y * a.x, wm.z * area);
+    let w = area / dot(v, v);
+    return area * w * w * INV_PI;
+}
+
+// |(alpha_t x, alpha_b y, z)|: sqrt(1 + alpha^2 tan^2) times the cosine, finite at grazing.
+fn ggx_stretched(w: vec3f, alpha: vec2f) -> f32 {
+    return length(vec3f(ggx_clamp_alpha(alpha) * w.xy, w.z));
+}
+
+// Smith's Lambda: hidden over visible area.
+fn ggx_lambda(w: vec3f, alpha: vec2f) -> f32 {
+    let z = max(abs(w.z), 1e-7);
+    return 0.5 * (ggx_stretched(w, alpha) - abs(w.z)) / z;
+}
+
+// Visible fraction seen from w, 1 / (1 + Lambda).
+fn ggx_masking(w: vec3f, alpha: vec2f) -> f32 {
+    if w.z <= 0.0 {
+        return 0.0;
+    }
+    return 2.0 * w.z / (w.z + ggx_stretched(w, alpha));
+}
+
+// Fraction visible from both sides, divided by 4 cos_o cos_i.
+fn ggx_visibility(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return 0.0;
+    }
+    let so = ggx_stretched(wo, alpha);
+    let si = ggx_stretched(wi, alpha);
+    let correlated = 2.0 * (wi.z * so + wo.z * si);
+    let separable = (wo.z + so) * (wi.z + si);
+    // The floor acts only where a cosine is below 1e-9.
+    return 1.0 / max(select(correlated, separable, masking == GGX_SEPARABLE), 1e-12);
+}
+
+// Fraction visible from both sides.
+fn ggx_shadowing_masking(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    return 4.0 * max(wo.z, 0.0) * max(wi.z, 0.0) * ggx_visibility(wo, wi, alpha, masking);
+}
+
+// Half vector in xyz and D G / (4 cos cos) in w; 0 where either side is below the horizon.
+fn ggx_half(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> vec4f {
+    let h = wo + wi;
+    let length2 = dot(h, h);
+    if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
+        return vec4f(0.0, 0.0, 1.0, 0.0);
+    }
+    let wm = h * inverseSqrt(length2);
+    return vec4f(wm, ggx_distribution(wm, alpha) * ggx_visibility(wo, wi, alpha, masking));
+}
+
+// Single-scattering BRDF, without the cosine.
+fn ggx_eval(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel: Fresnel, masking: u32) -> vec3f {
+    let half_vector = ggx_half(wo, wi, alpha, masking);
+    if half_vector.w == 0.0 {
+        return vec3f(0.0);
+    }
+    return half_vector.w * fresnel_eval(fresnel, dot(wi, half_vector.xyz));
+}
+
+// Microfacet normal visible from wo (spherical caps, Dupuy and Benyoub 2023).
+fn ggx_sample_wm(wo: vec3f, alpha: vec2f, u: vec2f) -> vec3f {
+    let a = ggx_clamp_alpha(alpha);
+    let stretched = normalize(vec3f(a * wo.xy, wo.z));
+    let z = 1.0 - u.y * (1.0 + stretched.z);
+    let sin_theta = sqrt(clamp((1.0 - z) * (1.0 + z), 0.0, 1.0));
+    let phi = 2.0 * PI * u.x;
+    let h = vec3f(sin_theta * cos(phi), sin_theta * sin(phi), z) + stretched;
+    return normalize(vec3f(a * h.xy, max(h.z, 1e-20)));
+}
+
+// Density of ggx_sample_wm per steradian of wm.
+fn ggx_pdf_wm(wo: vec3f, wm: vec3f, alpha: vec2f) -> f32 {
+    let toward = dot(wo, wm);
+    if wo.z <= 0.0 || toward <= 0.0 {
+        return 0.0;
+    }
+    return ggx_distribution(wm, alpha) * 2.0 * toward / (wo.z + ggx_stretched(wo, alpha));
+}
+
+// Density per steradian of wi when wo is reflected at ggx_sample_wm.
+fn ggx_pdf(wo: vec3f, wi: vec3f, alpha: vec2f) -> f32 {
+    let h = wo + wi;
+    let length2 = dot(h, h);
+    if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
+        return 0.0;
+    }
+    return 0.5 * ggx_distribution(h * inverseSqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
+}
+
+// A place between two nodes of an axis: index and fraction; x in [0, 1] over `count` nodes.
+struct GgxAxis {
+    index: u32,
+    fraction: f32,
+}
+
+fn ggx_albedo_axis(x: f32, count: u32) -> GgxAxis {
+    let scaled = clamp(x, 0.0, 1.0) * f32(count - 1u);
+    let index = min(u32(scaled), count - 2u);
+    return GgxAxis(index, scaled - f32(index));
+}
+
+// A width on its axis.
+fn ggx_albedo_axis_alpha(alpha: f32) -> GgxAxis {
+    let root = sqrt(sqrt(clamp(alpha, GGX_ALPHA_MIN, 1.0)));
+    return ggx_albedo_axis((root - GGX_ALBEDO_ROOT_MIN) / (1.0 - GGX_ALBEDO_ROOT_MIN), GGX_ALBEDO_ALPHA);
+}
+
+// Linear interpolation of the entries from `first`.
+fn ggx_albedo_line(first: u32, x: GgxAxis) -> f32 {
+    return mix(ggx_albedo_entry(first + x.index), ggx_albedo_entry(first + x.index + 1u), x.fraction);
+}
+
+// Bilinear interpolation of rows of `width` entries.
+fn ggx_albedo_plane(first: u32, x: GgxAxis, y: GgxAxis, width: u32) -> f32 {
+    let row = first + y.index * width;
+    return mix(ggx_albedo_line(row, x), ggx_albedo_line(row + width, x), y.fraction);
+}
+
+// Loss at cosine mu for the widths in the plane of the view and across it.
+fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
+    let m = clamp(mu, 0.0, 1.0);
+    // At small widths the loss is a function of mu / a: this axis follows it.
+    let a = sqrt(0.5 * (along * along + across * across));
+    let x = ggx_albedo_axis(m * (1.0 + a) / (m + a), GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(along);
+    let z = ggx_albedo_axis_alpha(across);
+    let slab = masking * GGX_ALBEDO_STRIDE + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let near = ggx_albedo_plane(slab, x, y, GGX_ALBEDO_MU);
+    let root = mix(near, ggx_albedo_plane(next, x, y, GGX_ALBEDO_MU), z.fraction);
+    return root * root;
+}
+
+// Widths along the plane of w and across it, for which the table is looked up.
+fn ggx_toward(w: vec3f, alpha: vec2f) -> vec2f {
+    let a = ggx_clamp_alpha(alpha);
+    let a2 = a * a;
+    let cos2 = 1.0 - w.x * w.x - w.y * w.y;
+    let cos4 = cos2 * cos2;
+    // The azimuth turns to the wider axis toward the normal, where it is undefined.
+    let turned = w.x * w.x * (1.0 + cos2) * (1.0 + cos4);
+    let c = clamp(turned + select(0.0, cos4 * cos4, a.x > a.y), 0.0, 1.0);
+    let p2 = a2.y + (a2.x - a2.y) * c;
+    let q2 = a2.x + (a2.y - a2.x) * c;
+    let narrowed2 = a2.x * a2.y / p2;
+    return sqrt(vec2f(p2, q2 + (narrowed2 - q2) * GGX_ALBEDO_ANISOTROPY));
+}
+
+// Energy that single scattering loses toward w when F = 1.
+fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    let widths = ggx_toward(w, alpha);
+    return ggx_loss_in_plane(w.z, widths.x, widths.y, masking);
+}
+
+// Cosine-weighted mean of ggx_loss over the hemisphere.
+fn ggx_loss_mean(alpha: vec2f, masking: u32) -> f32 {
+    let a = ggx_clamp_alpha(alpha);
+    let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_LOSS_MEAN;
+    let x = ggx_albedo_axis_alpha(a.x);
+    return 0.5 * dot(a, a) * ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(a.y), GGX_ALBEDO_ALPHA);
+}
+
+// Directional albedo of single scattering when F = 1, at cosine mu for the isotropic width alpha.
+fn ggx_albedo(mu: f32, alpha: f32, masking: u32) -> f32 {
+    let a = clamp(alpha, GGX_ALPHA_MIN, 1.0);
+    return 1.0 - ggx_loss_in_plane(mu, a, a, masking);
+}
+
+// Its cosine-weighted mean.
+fn ggx_albedo_mean(alpha: f32, masking: u32) -> f32 {
+    return 1.0 - ggx_loss_mean(vec2f(alpha), masking);
+}
+
+// Mean of (1 - x)^5 over the reflected light, x = cosine at the microfacet: with f0 and f90 the directional albedo is
+// E mix(f0, f90, this).
+fn ggx_albedo_schlick_ratio(mu: f32, alpha: f32, masking: u32) -> f32 {
+    let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK;
+    let x = ggx_albedo_axis(sqrt(clamp(mu, 0.0, 1.0)), GGX_ALBEDO_MU);
+    return ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(alpha), GGX_ALBEDO_MU);
+}
+
+// Cosine-weighted mean of E times ggx_albedo_schlick_ratio.
+fn ggx_albedo_schlick_mean(alpha: f32, masking: u32) -> f32 {
+    return ggx_albedo_line(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, ggx_albedo_axis_alpha(alpha));
+}
+
+// Light that leaves after more than one bounce: BRDF without the cosine, reciprocal.
+fn ggx_multiple(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel_mean: vec3f, masking: u32) -> vec3f {
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return vec3f(0.0);
+    }
+    let mean = ggx_loss_mean(alpha, masking);
+    let lost = ggx_loss(wo, alpha, masking) * ggx_loss(wi, alpha, masking);
+    let f = clamp(fresnel_mean, vec3f(0.0), vec3f(1.0));
+    let bounces = f * f * (1.0 - mean) / (1.0 - f * mean);
+    return bounces * (lost * INV_PI / mean);
+}

@@ -1,0 +1,28 @@
+//! Light that leaves a rough metal after more than one reflection.
+
+use std::f32::consts::FRAC_1_PI;
+
+use glam::{Vec2, Vec3};
+
+use super::Masking;
+use super::albedo::{loss, loss_mean};
+
+/// BRDF of the light that scattered more than once, without the cosine; reciprocal.
+///
+/// `F_ms (1 - E(wo))(1 - E(wi)) / (pi (1 - E_avg))` with `F_ms = F^2 E_avg / (1 - F (1 - E_avg))` and F the
+/// cosine-weighted mean of the curve ([`Fresnel::mean`](crate::surface::fresnel::Fresnel::mean)). Kulla and Conty 2017,
+/// Revisiting Physically Based Shading at Imageworks; F_ms after Turquin 2019.
+pub fn multiple(wo: Vec3, wi: Vec3, alpha: Vec2, fresnel_mean: Vec3, masking: Masking) -> Vec3 {
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return Vec3::ZERO;
+    }
+    let mean = loss_mean(alpha, masking);
+    let lost = loss(wo, alpha, masking) * loss(wi, alpha, masking);
+    bounces(fresnel_mean, mean) * (lost * FRAC_1_PI / mean)
+}
+
+/// Colour of all bounces after the first, `F_ms`, for the mean loss of the surface.
+pub(super) fn bounces(fresnel_mean: Vec3, mean: f32) -> Vec3 {
+    let f = fresnel_mean.clamp(Vec3::ZERO, Vec3::ONE);
+    f * f * (1.0 - mean) / (Vec3::ONE - f * mean)
+}

@@ -1,0 +1,3 @@
+//! Memory layouts shared by Rust and WGSL.
+
+pub mod types;

@@ -1,0 +1,177 @@
+//! The `repr(C)` twins of `types.wgsl`, with their fields listed so that a test can compare offsets.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+/// A field of a shared struct.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// Name in both languages.
+    pub name: &'static str,
+    /// Bytes from the start of the struct.
+    pub offset: usize,
+    /// Bytes.
+    pub size: usize,
+}
+
+/// A struct that both languages declare.
+#[derive(Debug, Clone, Copy)]
+pub struct Struct {
+    /// Name in both languages.
+    pub name: &'static str,
+    /// Bytes of the whole.
+    pub size: usize,
+    /// Fields in order.
+    pub fields: &'static [Field],
+}
+
+macro_rules! shared {
+    ($(#[$doc:meta])* pub struct $name:ident { $($field:ident: $kind:ty),* $(,)? }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Pod, Zeroable)]
+        pub struct $name { $(#[allow(missing_docs)] pub $field: $kind),* }
+
+        impl $name {
+            /// Layout for the comparison with WGSL.
+            pub const LAYOUT: Struct = Struct {
+                name: stringify!($name),
+                size: size_of::<$name>(),
+                fields: &[$(Field {
+                    name: stringify!($field),
+                    offset: std::mem::offset_of!($name, $field),
+                    size: size_of::<$kind>(),
+                }),*],
+            };
+        }
+    };
+}
+
+/// Every shared struct.
+pub const STRUCTS: &[Struct] =
+    &[ViewData::LAYOUT, TextureSlot::LAYOUT, MaterialData::LAYOUT, InstanceData::LAYOUT, LightData::LAYOUT];
+
+/// Every shared constant with its value.
+pub const CONSTANTS: &[(&str, u32)] = &[
+    ("TEXTURE_COUNT", TEXTURE_COUNT as u32),
+    ("MATERIAL_PRESET", MATERIAL_PRESET),
+    ("MATERIAL_UNLIT", MATERIAL_UNLIT),
+    ("MATERIAL_MASK", MATERIAL_MASK),
+    ("MATERIAL_BLEND", MATERIAL_BLEND),
+    ("LIGHT_POINT", LIGHT_POINT),
+    ("LIGHT_SPOT", LIGHT_SPOT),
+    ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
+    ("SHADOW_NONE", SHADOW_NONE),
+];
+
+/// Textures of a material, in the order of the `TEXTURE_` constants of `types.wgsl`.
+pub const TEXTURE_COUNT: usize = 11;
+/// The metal part follows a preset; base colour and metallic are bypassed.
+pub const MATERIAL_PRESET: u32 = 1;
+/// Shows the base colour as emission.
+pub const MATERIAL_UNLIT: u32 = 2;
+/// Cut at `alpha_cutoff`.
+pub const MATERIAL_MASK: u32 = 4;
+/// Blended.
+pub const MATERIAL_BLEND: u32 = 8;
+/// Kind of [`LightData`].
+pub const LIGHT_POINT: u32 = 0;
+/// Kind of [`LightData`].
+pub const LIGHT_SPOT: u32 = 1;
+/// Kind of [`LightData`].
+pub const LIGHT_DIRECTIONAL: u32 = 2;
+/// `shadow_layer` of a light without a shadow map.
+pub const SHADOW_NONE: u32 = u32::MAX;
+
+shared! {
+    /// What changes from frame to frame.
+    pub struct ViewData {
+        clip_from_world: Mat4,
+        world_from_clip: Mat4,
+        viewer: Vec4,
+        environment_cos: f32,
+        environment_sin: f32,
+        environment_scale: f32,
+        environment_mips: f32,
+        size: Vec2,
+        light_count: u32,
+        samples: u32,
+        masking: u32,
+        multiple_scattering: u32,
+        frame: u32,
+        prefiltered_mips: f32,
+    }
+}
+
+shared! {
+    /// How one texture of a material is read.
+    pub struct TextureSlot {
+        matrix: Vec4,
+        offset: Vec2,
+        uv_set: u32,
+        present: u32,
+    }
+}
+
+shared! {
+    /// Factors of a material.
+    pub struct MaterialData {
+        base_color: Vec3,
+        opacity: f32,
+        emission: Vec3,
+        metallic: f32,
+        specular_color: Vec3,
+        specular: f32,
+        roughness: f32,
+        normal_scale: f32,
+        occlusion_strength: f32,
+        alpha_cutoff: f32,
+        coat: f32,
+        coat_roughness: f32,
+        coat_normal_scale: f32,
+        ior: f32,
+        anisotropy: f32,
+        anisotropy_rotation: f32,
+        flags: u32,
+        fresnel_form: u32,
+        fresnel_f0: Vec3,
+        fresnel_table: u32,
+        fresnel_n: Vec3,
+        albedo_table: u32,
+        fresnel_k: Vec3,
+        pad0: u32,
+        fresnel_mean: Vec3,
+        pad1: u32,
+        textures: [TextureSlot; TEXTURE_COUNT],
+    }
+}
+
+shared! {
+    /// A placed mesh.
+    pub struct InstanceData {
+        world_from_local: Mat4,
+        normal0: Vec4,
+        normal1: Vec4,
+        normal2: Vec4,
+        material: u32,
+        pad0: u32,
+        pad1: u32,
+        pad2: u32,
+    }
+}
+
+shared! {
+    /// A punctual light.
+    pub struct LightData {
+        position: Vec3,
+        kind: u32,
+        direction: Vec3,
+        range: f32,
+        intensity: Vec3,
+        spot_scale: f32,
+        spot_offset: f32,
+        shadow_layer: u32,
+        shadow_texel: f32,
+        pad0: u32,
+    }
+}

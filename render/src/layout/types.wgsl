@@ -1,0 +1,114 @@
+// Structs shared with the CPU. Each has a repr(C) twin of the same name in types.rs; a test compares them.
+
+const TEXTURE_COUNT: u32 = 11u;
+const TEXTURE_BASE_COLOR: u32 = 0u;
+const TEXTURE_METALLIC_ROUGHNESS: u32 = 1u;
+const TEXTURE_NORMAL: u32 = 2u;
+const TEXTURE_OCCLUSION: u32 = 3u;
+const TEXTURE_EMISSION: u32 = 4u;
+const TEXTURE_SPECULAR: u32 = 5u;
+const TEXTURE_SPECULAR_COLOR: u32 = 6u;
+const TEXTURE_COAT: u32 = 7u;
+const TEXTURE_COAT_ROUGHNESS: u32 = 8u;
+const TEXTURE_COAT_NORMAL: u32 = 9u;
+const TEXTURE_ANISOTROPY: u32 = 10u;
+
+const MATERIAL_PRESET: u32 = 1u;
+const MATERIAL_UNLIT: u32 = 2u;
+const MATERIAL_MASK: u32 = 4u;
+const MATERIAL_BLEND: u32 = 8u;
+
+const LIGHT_POINT: u32 = 0u;
+const LIGHT_SPOT: u32 = 1u;
+const LIGHT_DIRECTIONAL: u32 = 2u;
+// A light without a shadow map has this first layer.
+const SHADOW_NONE: u32 = 0xffffffffu;
+
+struct ViewData {
+    clip_from_world: mat4x4f,
+    world_from_clip: mat4x4f,
+    // Homogeneous viewer: w = 1 a point, w = 0 the direction towards an orthographic viewer.
+    viewer: vec4f,
+    // Rotation of the environment: cosine and sine; factor from texel to radiance; highest mip of the radiance cube.
+    environment_cos: f32,
+    environment_sin: f32,
+    environment_scale: f32,
+    environment_mips: f32,
+    size: vec2f,
+    light_count: u32,
+    samples: u32,
+    masking: u32,
+    multiple_scattering: u32,
+    // Index of the jittered frame, from 0: seeds the sample rotation.
+    frame: u32,
+    prefiltered_mips: f32,
+}
+
+struct TextureSlot {
+    // Columns of the 2x2 part of the coordinate transform.
+    matrix: vec4f,
+    offset: vec2f,
+    uv_set: u32,
+    present: u32,
+}
+
+struct MaterialData {
+    base_color: vec3f,
+    opacity: f32,
+    emission: vec3f,
+    metallic: f32,
+    specular_color: vec3f,
+    specular: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    alpha_cutoff: f32,
+    coat: f32,
+    coat_roughness: f32,
+    coat_normal_scale: f32,
+    ior: f32,
+    anisotropy: f32,
+    anisotropy_rotation: f32,
+    flags: u32,
+    fresnel_form: u32,
+    fresnel_f0: vec3f,
+    // First entry of the spectral table.
+    fresnel_table: u32,
+    fresnel_n: vec3f,
+    // First entry of the split-sum table.
+    albedo_table: u32,
+    fresnel_k: vec3f,
+    pad0: u32,
+    fresnel_mean: vec3f,
+    pad1: u32,
+    textures: array<TextureSlot, 11>,
+}
+
+struct InstanceData {
+    world_from_local: mat4x4f,
+    // Inverse transpose of the linear part, columns; the w of the first is the sign of the determinant.
+    normal0: vec4f,
+    normal1: vec4f,
+    normal2: vec4f,
+    material: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+struct LightData {
+    position: vec3f,
+    kind: u32,
+    direction: vec3f,
+    // Cut-off distance in metres, 0 for none.
+    range: f32,
+    intensity: vec3f,
+    // Cone: factor = clamp(cos * spot_scale + spot_offset).
+    spot_scale: f32,
+    spot_offset: f32,
+    // First layer of the shadow array, six for a point light, or SHADOW_NONE.
+    shadow_layer: u32,
+    // World size of a shadow texel at distance 1 (point, spot) or everywhere (directional).
+    shadow_texel: f32,
+    pad0: u32,
+}

@@ -1,0 +1,127 @@
+//! Lights the G-buffer with lamps and the `classical` environment, and shows the environment behind it.
+
+use crate::device::Gpu;
+use crate::pass::environment::{EnvironmentMaps, cube_sampler, cube_view};
+use crate::pass::gbuffer::GBuffer;
+use crate::pass::shadow::{self, Shadows};
+use crate::pass::{buffer_entry, cleared, fullscreen_pipeline, texture_entry};
+use crate::shader;
+
+/// Layout of what `shade.wgsl` reads at group 2.
+pub fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let float = wgpu::TextureSampleType::Float { filterable: true };
+    let cube = wgpu::TextureViewDimension::Cube;
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let sampler = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: fragment,
+        ty: wgpu::BindingType::Sampler(ty),
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("light"),
+        entries: &[
+            texture_entry(0, float, cube),
+            texture_entry(1, float, cube),
+            texture_entry(2, float, cube),
+            sampler(3, wgpu::SamplerBindingType::Filtering),
+            texture_entry(4, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array),
+            sampler(5, wgpu::SamplerBindingType::Comparison),
+            buffer_entry(6, fragment, storage),
+            buffer_entry(7, fragment, storage),
+            buffer_entry(8, fragment, storage),
+        ],
+    })
+}
+
+/// Group 2 for these lights, this environment and these tables.
+pub fn light_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    maps: &EnvironmentMaps,
+    shadows: &Shadows,
+    tables: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance].map(cube_view);
+    let cube_sampler = cube_sampler(&gpu.device);
+    let shadow_sampler = shadow::sampler(&gpu.device);
+    let resources = [
+        wgpu::BindingResource::TextureView(&cubes[0]),
+        wgpu::BindingResource::TextureView(&cubes[1]),
+        wgpu::BindingResource::TextureView(&cubes[2]),
+        wgpu::BindingResource::Sampler(&cube_sampler),
+        wgpu::BindingResource::TextureView(&shadows.maps),
+        wgpu::BindingResource::Sampler(&shadow_sampler),
+        shadows.lights.as_entire_binding(),
+        shadows.clip_from_world.as_entire_binding(),
+        tables.as_entire_binding(),
+    ];
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("light"), layout, entries: &entries })
+}
+
+/// The pipeline and the layout of the G-buffer as textures.
+pub struct ClassicalPass {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl ClassicalPass {
+    /// Compiles the pipeline for targets of `format`.
+    pub fn new(
+        gpu: &Gpu,
+        scene_layout: &wgpu::BindGroupLayout,
+        light_layout: &wgpu::BindGroupLayout,
+        format: wgpu::TextureFormat,
+    ) -> ClassicalPass {
+        let device = &gpu.device;
+        let flat = wgpu::TextureViewDimension::D2;
+        let words = |binding| texture_entry(binding, wgpu::TextureSampleType::Uint, flat);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("gbuffer read"),
+            entries: &[words(0), words(1), words(2), words(3), texture_entry(4, wgpu::TextureSampleType::Depth, flat)],
+        });
+        let layouts = [Some(scene_layout), Some(&layout), Some(light_layout)];
+        let pipeline =
+            fullscreen_pipeline(device, "classical", &layouts, &shader::CLASSICAL.module(device), format);
+        ClassicalPass { layout, pipeline }
+    }
+
+    /// The G-buffer as group 1.
+    pub fn group(&self, gpu: &Gpu, buffer: &GBuffer) -> wgpu::BindGroup {
+        let views = buffer.words.iter().chain([&buffer.depth]);
+        let entries: Vec<_> = views
+            .enumerate()
+            .map(|(i, view)| wgpu::BindGroupEntry {
+                binding: i as u32,
+                resource: wgpu::BindingResource::TextureView(view),
+            })
+            .collect();
+        let descriptor =
+            wgpu::BindGroupDescriptor { label: Some("gbuffer read"), layout: &self.layout, entries: &entries };
+        gpu.device.create_bind_group(&descriptor)
+    }
+
+    /// Writes every pixel of the target.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        groups: [&wgpu::BindGroup; 3],
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("classical"),
+            color_attachments: &[cleared(target)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        for (index, group) in groups.into_iter().enumerate() {
+            pass.set_bind_group(index as u32, group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,153 @@
+// Builds the cubes of an environment, one level of one cube per dispatch, a texel per invocation, a face per z.
+
+struct Params {
+    // Levels of the radiance cube.
+    levels: f32,
+    // GGX width of the level that is written.
+    alpha: f32,
+    samples: u32,
+    // Factor that brings the source into the range of half floats.
+    scale: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var equirectangular: texture_2d<f32>;
+@group(0) @binding(2) var finer: texture_2d_array<f32>;
+@group(0) @binding(3) var radiance_cube: texture_cube<f32>;
+@group(0) @binding(4) var cube_sampler: sampler;
+@group(0) @binding(5) var target_level: texture_storage_2d_array<rgba16float, write>;
+
+// Cube maps are left-handed: the environment's z is mirrored.
+fn environment_from_cube(d: vec3f) -> vec3f {
+    return vec3f(d.x, d.y, -d.z);
+}
+
+// Unit direction of a point of a face, (-1, -1) at its top left.
+fn face_direction(face: u32, p: vec2f) -> vec3f {
+    var d: vec3f;
+    switch face {
+        case 0u: { d = vec3f(1.0, -p.y, -p.x); }
+        case 1u: { d = vec3f(-1.0, -p.y, p.x); }
+        case 2u: { d = vec3f(p.x, 1.0, p.y); }
+        case 3u: { d = vec3f(p.x, -1.0, -p.y); }
+        case 4u: { d = vec3f(p.x, -p.y, 1.0); }
+        default: { d = vec3f(-p.x, -p.y, -1.0); }
+    }
+    return normalize(d);
+}
+
+// Rounds to the nearest half float: some devices truncate on the store, which would darken every level a little more.
+fn half_rounded(x: vec3f) -> vec3f {
+    let bits = bitcast<vec3u>(x);
+    return bitcast<vec3f>((bits + 0xfffu + ((bits >> vec3u(13u)) & vec3u(1u))) & vec3u(0xffffe000u));
+}
+
+fn store(id: vec3u, value: vec3f) {
+    textureStore(target_level, id.xy, id.z, vec4f(half_rounded(clamp(value, vec3f(0.0), vec3f(65000.0))), 1.0));
+}
+
+fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
+    return textureSampleLevel(radiance_cube, cube_sampler, environment_from_cube(direction), level).rgb;
+}
+
+// Bilinear, wrapping around and stopping at the poles. Must agree with `Environment::radiance` of the CPU.
+fn equirectangular_radiance(d: vec3f) -> vec3f {
+    let size = vec2f(textureDimensions(equirectangular));
+    let u = 0.5 + atan2(d.x, -d.z) * (0.5 * INV_PI);
+    let v = acos(clamp(d.y, -1.0, 1.0)) * INV_PI;
+    let p = vec2f(u, v) * size - 0.5;
+    let low = floor(p);
+    let f = p - low;
+    let w = i32(size.x);
+    let x0 = (i32(low.x) + w) % w;
+    let x1 = (i32(low.x) + 1 + w) % w;
+    let y0 = clamp(i32(low.y), 0, i32(size.y) - 1);
+    let y1 = clamp(i32(low.y) + 1, 0, i32(size.y) - 1);
+    let top = mix(textureLoad(equirectangular, vec2i(x0, y0), 0), textureLoad(equirectangular, vec2i(x1, y0), 0), f.x);
+    let bottom = mix(textureLoad(equirectangular, vec2i(x0, y1), 0), textureLoad(equirectangular, vec2i(x1, y1), 0), f.x);
+    return mix(top, bottom, f.y).rgb;
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(target_level);
+    if any(id.xy >= size) {
+        return;
+    }
+    // Near the poles a texel of the cube covers many columns of the map.
+    let center = face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0);
+    let n = select(4u, 12u, abs(center.y) > 0.9);
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < n * n; i++) {
+        let offset = (vec2f(f32(i % n), f32(i / n)) + 0.5) / f32(n);
+        let direction = face_direction(id.z, (vec2f(id.xy) + offset) / vec2f(size) * 2.0 - 1.0);
+        sum += equirectangular_radiance(environment_from_cube(direction));
+    }
+    store(id, sum / f32(n * n) * params.scale);
+}
+
+// Solid angle of a texel up to a factor: texels of a corner are smaller than those of a face's middle.
+fn texel_weight(id: vec2u, size: vec2u) -> f32 {
+    let p = (vec2f(id) + 0.5) / vec2f(size) * 2.0 - 1.0;
+    return pow(1.0 + dot(p, p), -1.5);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn downsample(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= textureDimensions(target_level)) {
+        return;
+    }
+    let size = textureDimensions(finer);
+    var sum = vec3f(0.0);
+    var weight = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let at = min(2u * id.xy + vec2u(i & 1u, i >> 1u), size - 1u);
+        let w = texel_weight(at, size);
+        sum += w * textureLoad(finer, at, id.z, 0).rgb;
+        weight += w;
+    }
+    store(id, sum / weight);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn prefilter(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(target_level);
+    if any(id.xy >= size) {
+        return;
+    }
+    let direction = environment_from_cube(face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0));
+    store(id, classical_prefilter(direction, params.alpha, params.samples, params.levels));
+}
+
+// Level 0 of the prefiltered cube is the mirror: a copy.
+@compute @workgroup_size(8, 8, 1)
+fn copy(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= textureDimensions(target_level)) {
+        return;
+    }
+    store(id, textureLoad(finer, id.xy, id.z, 0).rgb);
+}
+
+// Sum over all texels of `finer`, a level of the radiance cube.
+@compute @workgroup_size(8, 8, 1)
+fn irradiance(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(target_level);
+    if any(id.xy >= size) {
+        return;
+    }
+    let normal = face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0);
+    let source = textureDimensions(finer);
+    var sum = vec3f(0.0);
+    var solid_angle = 0.0;
+    for (var face = 0u; face < 6u; face++) {
+        for (var y = 0u; y < source.y; y++) {
+            for (var x = 0u; x < source.x; x++) {
+                let d = face_direction(face, (vec2f(vec2u(x, y)) + 0.5) / vec2f(source) * 2.0 - 1.0);
+                let w = texel_weight(vec2u(x, y), source);
+                sum += textureLoad(finer, vec2u(x, y), face, 0).rgb * (w * max(0.0, dot(d, normal)));
+                solid_angle += w;
+            }
+        }
+    }
+    store(id, sum * (4.0 * PI / solid_angle));
+}

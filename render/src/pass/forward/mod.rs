@@ -1,0 +1,94 @@
+//! Blended surfaces over the lit picture, from far to near, lit by the same functions.
+
+use glam::{Vec3, Vec4};
+
+use crate::device::Gpu;
+use crate::pass::attachment;
+use crate::pass::gbuffer::{VERTEX_LAYOUT, depth_state};
+use crate::scene::{Draw, GpuScene, Variant};
+use crate::shader;
+
+/// Pipelines, one for each [`Variant`].
+pub struct ForwardPass {
+    pipelines: [wgpu::RenderPipeline; 4],
+}
+
+impl ForwardPass {
+    /// Compiles the pipelines for targets of `format`.
+    pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>], format: wgpu::TextureFormat) -> ForwardPass {
+        let device = &gpu.device;
+        let module = shader::FORWARD.module(device);
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("forward"),
+            bind_group_layouts: layouts,
+            immediate_size: 0,
+        });
+        let target = wgpu::ColorTargetState {
+            format,
+            blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::COLOR,
+        };
+        let pipelines = Variant::ALL.map(|variant| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("forward"),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex"),
+                    compilation_options: Default::default(),
+                    buffers: &[Some(VERTEX_LAYOUT)],
+                },
+                primitive: variant.primitive(),
+                depth_stencil: Some(depth_state(false)),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fragment"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(target.clone())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        });
+        ForwardPass { pipelines }
+    }
+
+    /// Draws the blended instances sorted by the distance of their centres from the viewer (homogeneous, see
+    /// `ViewData`). Nothing is encoded when there is none.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        scene: &GpuScene,
+        groups: [&wgpu::BindGroup; 2],
+        viewer: Vec4,
+    ) {
+        let mut draws: Vec<&Draw> = scene.draws.iter().filter(|d| d.blended).collect();
+        if draws.is_empty() {
+            return;
+        }
+        let nearness = |p: Vec3| {
+            if viewer.w == 0.0 { viewer.truncate().dot(p) } else { -viewer.truncate().distance_squared(p) }
+        };
+        draws.sort_by(|a, b| nearness(a.center).total_cmp(&nearness(b.center)));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("forward"),
+            color_attachments: &[attachment(target, wgpu::LoadOp::Load)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        let [scene_group, light_group] = groups;
+        scene.bind(&mut pass, scene_group);
+        pass.set_bind_group(2, light_group, &[]);
+        for draw in draws {
+            pass.set_pipeline(&self.pipelines[draw.variant.index()]);
+            scene.draw(&mut pass, draw);
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Textures and buffers back to the CPU.
+
+use crate::device::{Gpu, GpuError};
+
+/// The bytes of one level of one layer, rows without padding.
+pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, layer: u32) -> Result<Vec<u8>, GpuError> {
+    let width = (texture.width() >> level).max(1);
+    let height = (texture.height() >> level).max(1);
+    let texel = texture.format().block_copy_size(None).unwrap_or(4);
+    let row = width * texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = read_buffer_of(gpu, u64::from(padded) * u64::from(height));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: level,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            aspect: wgpu::TextureAspect::All,
+        },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: Some(height),
+            },
+        },
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = map(gpu, &buffer)?;
+    Ok(bytes.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+}
+
+/// The bytes of a buffer that allows `COPY_SRC`.
+pub fn read_buffer(gpu: &Gpu, source: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let buffer = read_buffer_of(gpu, source.size());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, source.size());
+    gpu.queue.submit([encoder.finish()]);
+    map(gpu, &buffer)
+}
+
+fn read_buffer_of(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    })
+}
+
+fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let (send, receive) = std::sync::mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // The receiver is gone only when this function returned early.
+        let _ = send.send(result);
+    });
+    gpu.wait()?;
+    let failed = |reason: String| GpuError::Failed(format!("reading back: {reason}"));
+    receive.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
+    let view = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
+    Ok(view.to_vec())
+}

@@ -1,0 +1,99 @@
+//! The shaders of the passes: which leaves and which own files each is joined from, in order.
+
+use burnish_core::leaf::{self, Leaf};
+use burnish_core::lighting::classical;
+use burnish_core::surface::layered;
+
+/// A shader module, joined from leaves and the pass's own files.
+pub struct Shader {
+    /// Name for messages.
+    pub name: &'static str,
+    /// Leaves it uses; what they need comes along.
+    pub leaves: &'static [&'static Leaf],
+    /// Own files after the leaves.
+    pub files: &'static [&'static str],
+}
+
+const TYPES: &str = include_str!("layout/types.wgsl");
+const TEXEL: &str = include_str!("pass/gbuffer/texel.wgsl");
+const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
+const SHADE: &str = include_str!("pass/classical/shade.wgsl");
+
+/// Fills the G-buffer.
+pub static GBUFFER: Shader = Shader {
+    name: "gbuffer",
+    leaves: &[&layered::WGSL],
+    files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/gbuffer/gbuffer.wgsl")],
+};
+
+/// Depth from a light.
+pub static SHADOW: Shader = Shader {
+    name: "shadow",
+    leaves: &[&layered::WGSL],
+    files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/shadow/shadow.wgsl")],
+};
+
+/// Builds the cubes of an environment.
+pub static ENVIRONMENT: Shader = Shader {
+    name: "environment",
+    leaves: &[&classical::WGSL],
+    files: &[NO_TABLES, NO_CUBES, include_str!("pass/environment/environment.wgsl")],
+};
+
+/// Lights the G-buffer.
+pub static CLASSICAL: Shader = Shader {
+    name: "classical",
+    leaves: &[&classical::WGSL],
+    files: &[TYPES, TEXEL, SCENE_BINDINGS, SHADE, include_str!("pass/classical/classical.wgsl")],
+};
+
+/// Blended surfaces.
+pub static FORWARD: Shader = Shader {
+    name: "forward",
+    leaves: &[&classical::WGSL],
+    files: &[TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
+};
+
+/// Adds a frame to the sum.
+pub static ACCUMULATE: Shader =
+    Shader { name: "accumulate", leaves: &[], files: &[include_str!("pass/accumulate/accumulate.wgsl")] };
+
+/// Every shader of the renderer. Tests validate all of them without a device.
+pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE];
+
+/// The bindings of `resolve.wgsl` for passes that draw no vertices.
+const SCENE_BINDINGS: &str = "
+@group(0) @binding(0) var<uniform> view: ViewData;
+@group(0) @binding(1) var<storage, read> instances: array<InstanceData>;
+@group(0) @binding(2) var<storage, read> materials: array<MaterialData>;
+";
+
+/// Functions that leaves ask for and passes that do not light surfaces never call.
+const NO_TABLES: &str = "
+fn ggx_albedo_entry(index: u32) -> f32 { return 0.0; }
+fn fresnel_table(table: u32, entry: u32) -> vec3f { return vec3f(0.0); }
+";
+const NO_CUBES: &str = "
+fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f { return vec3f(0.0); }
+fn classical_irradiance(direction: vec3f) -> vec3f { return vec3f(0.0); }
+";
+
+impl Shader {
+    /// The whole WGSL text.
+    pub fn source(&self) -> String {
+        let mut source = leaf::join(self.leaves);
+        for file in self.files {
+            source.push_str(file);
+            source.push('\n');
+        }
+        source
+    }
+
+    /// Compiles it.
+    pub fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {
+        device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(self.name),
+            source: wgpu::ShaderSource::Wgsl(self.source().into()),
+        })
+    }
+}

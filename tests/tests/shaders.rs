@@ -1,0 +1,116 @@
+//! Every WGSL file of the project, checked without a GPU: it parses and validates, the structs and constants that
+//! both languages declare agree, and a leaf stays a leaf.
+
+use burnish_core::leaf::{self, Leaf};
+use burnish_render::layout::types::{CONSTANTS, STRUCTS};
+use burnish_render::shader;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+fn validated(name: &str, source: &str) -> naga::Module {
+    let module = naga::front::wgsl::parse_str(source)
+        .unwrap_or_else(|e| panic!("{name} does not parse:\n{}", e.emit_to_string(source)));
+    // Packing halves is part of WGSL; naga lists it as a capability because old GL lacks it.
+    Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{name} is not valid:\n{}", e.emit_to_string(source)));
+    module
+}
+
+/// The leaf alone, with stand-ins for what passes supply.
+fn source_of(leaf: &'static Leaf) -> String {
+    let mut source = leaf::join(&[leaf]);
+    for needed in leaf::order(leaf) {
+        source.push_str(needed.externs);
+        source.push('\n');
+    }
+    source
+}
+
+#[test]
+fn every_leaf_validates_with_the_leaves_it_declares() {
+    let leaves = leaf::all();
+    assert!(!leaves.is_empty());
+    for leaf in leaves {
+        validated(leaf.name, &source_of(leaf));
+    }
+}
+
+#[test]
+fn leaf_names_are_unique() {
+    let mut names: Vec<_> = leaf::all().iter().map(|l| l.name).collect();
+    names.sort_unstable();
+    let count = names.len();
+    names.dedup();
+    assert_eq!(names.len(), count);
+}
+
+#[test]
+fn leaves_have_no_bindings_and_no_entry_points() {
+    for leaf in leaf::all() {
+        let module = validated(leaf.name, &source_of(leaf));
+        assert!(module.entry_points.is_empty(), "{} has an entry point", leaf.name);
+        for (_, global) in module.global_variables.iter() {
+            panic!("{} has the global variable {:?}", leaf.name, global.name);
+        }
+    }
+}
+
+#[test]
+fn every_pass_validates() {
+    assert!(!shader::ALL.is_empty());
+    for shader in shader::ALL {
+        let module = validated(shader.name, &shader.source());
+        assert!(!module.entry_points.is_empty(), "{} has no entry point", shader.name);
+    }
+}
+
+#[test]
+fn shared_structs_have_the_same_names_offsets_and_sizes() {
+    let module = validated("types", include_str!("../../render/src/layout/types.wgsl"));
+    let mut layouter = naga::proc::Layouter::default();
+    layouter.update(module.to_ctx()).unwrap();
+    let mut seen = Vec::new();
+    for (handle, ty) in module.types.iter() {
+        let naga::TypeInner::Struct { members, span } = &ty.inner else { continue };
+        let name = ty.name.clone().unwrap();
+        let twin = STRUCTS.iter().find(|s| s.name == name).unwrap_or_else(|| panic!("{name} has no Rust twin"));
+        assert_eq!(twin.size, *span as usize, "size of {name}");
+        assert_eq!(twin.size, layouter[handle].to_stride() as usize, "stride of {name}");
+        let theirs: Vec<_> = members
+            .iter()
+            .map(|m| {
+                let size = module.types[m.ty].inner.size(module.to_ctx()) as usize;
+                (m.name.clone().unwrap(), m.offset as usize, size)
+            })
+            .collect();
+        let ours: Vec<_> = twin.fields.iter().map(|f| (f.name.to_string(), f.offset, f.size)).collect();
+        assert_eq!(ours, theirs, "fields of {name}");
+        seen.push(name);
+    }
+    for twin in STRUCTS {
+        assert!(seen.iter().any(|name| name == twin.name), "{} has no WGSL twin", twin.name);
+    }
+}
+
+/// Value of a module constant as a number.
+fn constant(module: &naga::Module, name: &str) -> f64 {
+    let (_, constant) = module
+        .constants
+        .iter()
+        .find(|(_, c)| c.name.as_deref() == Some(name))
+        .unwrap_or_else(|| panic!("no WGSL constant {name}"));
+    match module.global_expressions[constant.init] {
+        naga::Expression::Literal(naga::Literal::U32(v)) => f64::from(v),
+        naga::Expression::Literal(naga::Literal::I32(v)) => f64::from(v),
+        naga::Expression::Literal(naga::Literal::F32(v)) => f64::from(v),
+        ref other => panic!("{name} is {other:?}, not a number"),
+    }
+}
+
+#[test]
+fn constants_of_both_languages_are_equal() {
+    let types = validated("types", include_str!("../../render/src/layout/types.wgsl"));
+    for (name, value) in CONSTANTS {
+        assert_eq!(constant(&types, name), f64::from(*value), "{name}");
+    }
+}

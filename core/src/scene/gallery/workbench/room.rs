@@ -22,7 +22,7 @@ const JOINT: f32 = 0.003;
 pub fn add_floor(scene: &mut Scene) {
     let material = Material {
         name: "floor".into(),
-        base_color: Vec3::new(0.30, 0.285, 0.265),
+        base_color: Vec3::new(0.25, 0.237, 0.22),
         roughness: 0.4,
         ..Material::default()
     };
@@ -55,9 +55,9 @@ fn tone(column: usize, row: usize) -> f32 {
 pub fn add_walls(scene: &mut Scene) {
     let paint =
         |name: &str, base_color| Material { name: name.into(), base_color, roughness: 0.7, ..Material::default() };
-    let warm = add_material(scene, paint("wall-left", Vec3::new(0.5, 0.15, 0.06)));
-    let cool = add_material(scene, paint("wall-right", Vec3::new(0.04, 0.145, 0.225)));
-    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.34, 0.33, 0.315)));
+    let warm = add_material(scene, paint("wall-left", Vec3::new(0.46, 0.125, 0.045)));
+    let cool = add_material(scene, paint("wall-right", Vec3::new(0.03, 0.11, 0.175)));
+    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.235, 0.228, 0.22)));
     let side = Vec3::new(THICKNESS, ROOM.y, 2.0 * ROOM.z);
     let aside = ROOM.x + 0.5 * THICKNESS;
     wall(scene, "wall-left", warm, side, Vec3::new(-aside, 0.5 * ROOM.y, 0.0));

@@ -71,7 +71,7 @@ pub fn anisotropy() -> Scene {
 /// Coats, dielectrics, emission, occlusion, unlit surfaces, vertex colours, and one body beside its mirror image.
 pub fn layers() -> Scene {
     let mut stage = Stage::new("layers");
-    let stripes = stage.image("stripes", 64, |x, _| if x / 8 % 2 == 0 { [255; 4] } else { [40, 40, 40, 255] });
+    let stripes = stage.image("stripes", 64, |x, _| if x / 8 % 2 == 0 { [255; 4] } else { [40; 4] });
     let paint = |base_color: Vec3| Material { base_color, roughness: 0.5, ..Material::default() };
     let red = Vec3::new(0.5, 0.04, 0.03);
     let coated = Material { coat: 1.0, coat_roughness: 0.05, ..metal(red, 0.5) };
@@ -99,6 +99,10 @@ pub fn layers() -> Scene {
     let white = stage.material(paint(Vec3::ONE));
     let colours = stage.mesh(rainbow());
     stage.place(colours, white, cell(3, 5, 2, 4));
+
+    // Alpha of the stripes is the strength of the reflection.
+    let glossy = stage.material(Material { specular_texture: Some(texture(stripes)), ior: 2.4, ..black });
+    stage.place(ball, glossy, cell(4, 5, 2, 4));
 
     // The mirrored body must keep its fronts, its shading and the sense of its brushing, mirrored.
     let brushed = stage.material(Material {

@@ -1,11 +1,13 @@
 //! The room: a tiled floor, three walls and a window.
 
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use std::sync::Arc;
+
+use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
 use super::{add, add_material};
 use crate::{
-    material::Material,
-    scene::{Mesh, Scene, gallery::shape},
+    material::{Material, Sampler, TextureRef, Wrap},
+    scene::{Image, Mesh, Scene, Texels, gallery::shape},
 };
 
 /// Inside of the room: x is half its width, y its height, z half its depth; metres.
@@ -20,7 +22,7 @@ const JOINT: f32 = 0.003;
 pub fn add_floor(scene: &mut Scene) {
     let material = Material {
         name: "floor".into(),
-        base_color: Vec3::new(0.30, 0.285, 0.265),
+        base_color: Vec3::new(0.25, 0.237, 0.22),
         roughness: 0.4,
         ..Material::default()
     };
@@ -53,9 +55,9 @@ fn tone(column: usize, row: usize) -> f32 {
 pub fn add_walls(scene: &mut Scene) {
     let paint =
         |name: &str, base_color| Material { name: name.into(), base_color, roughness: 0.7, ..Material::default() };
-    let warm = add_material(scene, paint("wall-left", Vec3::new(0.5, 0.15, 0.06)));
-    let cool = add_material(scene, paint("wall-right", Vec3::new(0.04, 0.145, 0.225)));
-    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.34, 0.33, 0.315)));
+    let warm = add_material(scene, paint("wall-left", Vec3::new(0.46, 0.125, 0.045)));
+    let cool = add_material(scene, paint("wall-right", Vec3::new(0.03, 0.11, 0.175)));
+    let neutral = add_material(scene, paint("wall-back", Vec3::new(0.235, 0.228, 0.22)));
     let side = Vec3::new(THICKNESS, ROOM.y, 2.0 * ROOM.z);
     let aside = ROOM.x + 0.5 * THICKNESS;
     wall(scene, "wall-left", warm, side, Vec3::new(-aside, 0.5 * ROOM.y, 0.0));
@@ -73,13 +75,7 @@ fn wall(scene: &mut Scene, name: &str, material: usize, size: Vec3, middle: Vec3
 fn add_window(scene: &mut Scene) {
     let size = Vec2::new(0.5, 0.34);
     let frame_width = 0.026;
-    let glow = Material {
-        name: "window".into(),
-        base_color: Vec3::splat(0.02),
-        emission: 4.0 * Vec3::new(1.0, 0.93, 0.82),
-        roughness: 0.3,
-        ..Material::default()
-    };
+    let glow = glow(scene);
     let glow = add_material(scene, glow);
     let wood = Material {
         name: "frame".into(),
@@ -112,4 +108,35 @@ fn add_window(scene: &mut Scene) {
         bar(size.x, 0.014, 0.0, 0.1 * h, 0.018),
     ];
     add(scene, "frame", shape::combined("frame", bars), wood, placed);
+}
+
+/// The pane: glows with the picture of the sky.
+fn glow(scene: &mut Scene) -> Material {
+    scene.images.push(Arc::new(sky()));
+    let sky = TextureRef {
+        image: scene.images.len() - 1,
+        sampler: Sampler { wrap_u: Wrap::Clamp, wrap_v: Wrap::Clamp, ..Sampler::default() },
+        uv_set: 0,
+        transform: Mat3::IDENTITY,
+    };
+    Material {
+        name: "window".into(),
+        base_color: Vec3::splat(0.02),
+        emission: Vec3::splat(2.6),
+        emission_texture: Some(sky),
+        roughness: 0.3,
+        ..Material::default()
+    }
+}
+
+/// What is behind the window: an evening sky, blue above and warm below.
+fn sky() -> Image {
+    let (width, height) = (4, 64);
+    let (zenith, horizon) = (Vec3::new(150.0, 190.0, 250.0), Vec3::new(255.0, 226.0, 190.0));
+    let texels = (0..width * height).flat_map(|i| {
+        let down = (i / width) as f32 / (height - 1) as f32;
+        let [r, g, b] = zenith.lerp(horizon, down.powf(0.7)).to_array().map(|v| v as u8);
+        [r, g, b, 255]
+    });
+    Image { name: "sky".into(), width, height, texels: Texels::Unorm8(texels.collect()) }
 }

@@ -1,9 +1,9 @@
 //! Tables of what single scattering reflects and loses, for shaders and for [`multiple`](fn@super::multiple).
 //!
 //! The loss depends on the cosine and on two widths, in the plane of the view and across it. Axes: alpha by its fourth
-//! root, so that the rows keep a steady ratio; the cosine by `mu (1 + a)/(mu + a)` for the loss, which at small widths
-//! depends on `mu / a` alone, and by its root for the Schlick ratio. The loss is stored by its root: it falls as
-//! `(a / mu)^2` and the root is nearly linear on that axis.
+//! root, so that the rows keep a steady ratio; the cosine by the root of `mu (1 + a)/(mu + a)` for the loss, which at
+//! small widths depends on `mu / a` alone, and by its root for the Schlick ratio. The loss is stored by its root: it
+//! rises as `mu` at grazing and falls as `(a / mu)^2` above, and the root is nearly linear on that axis at both ends.
 
 use std::sync::LazyLock;
 
@@ -72,9 +72,9 @@ impl AlbedoTable {
             .map(|entry| {
                 let (column, row) = (entry % ALBEDO_MU, entry / ALBEDO_MU);
                 let (along, across) = (node_alpha(row % ALBEDO_ALPHA), node_alpha(row / ALBEDO_ALPHA));
-                // Inverse of x = mu (1 + a) / (mu + a).
-                let (x, a) = (node_x(column), (0.5 * (along * along + across * across)).sqrt());
-                reflection::loss(a * x / (1.0 + a - x), along, across)
+                // Inverse of x^2 = mu (1 + a) / (mu + a).
+                let (x2, a) = (node_x(column).powi(2), (0.5 * (along * along + across * across)).sqrt());
+                reflection::loss(a * x2 / (1.0 + a - x2), along, across)
             })
             .collect();
         for (entry, loss) in losses.iter().enumerate() {
@@ -135,7 +135,7 @@ impl AlbedoTable {
     fn loss_in_plane(&self, mu: f32, along: f32, across: f32, masking: Masking) -> f32 {
         let m = mu.clamp(0.0, 1.0);
         let a = (0.5 * (along * along + across * across)).sqrt();
-        let x = Axis::new(m * (1.0 + a) / (m + a), ALBEDO_MU);
+        let x = Axis::new((m * (1.0 + a) / (m + a)).sqrt(), ALBEDO_MU);
         let (y, z) = (Axis::of_alpha(along), Axis::of_alpha(across));
         let slab = masking as u32 * ALBEDO_STRIDE + z.index * ALBEDO_MU * ALBEDO_ALPHA;
         let next = slab + ALBEDO_MU * ALBEDO_ALPHA;

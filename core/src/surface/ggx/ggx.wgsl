@@ -72,24 +72,25 @@ fn ggx_shadowing_masking(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> f3
     return 4.0 * max(wo.z, 0.0) * max(wi.z, 0.0) * ggx_visibility(wo, wi, alpha, masking);
 }
 
-// Half vector in xyz and D G / (4 cos cos) in w; 0 where either side is below the horizon.
-fn ggx_half(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> vec4f {
+// x: cosine at the microfacet that reflects wi to wo. y: D G / (4 cos_o cos_i), 0 where either is below the horizon.
+fn ggx_microfacet(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> vec2f {
     let h = wo + wi;
     let length2 = dot(h, h);
     if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
-        return vec4f(0.0, 0.0, 1.0, 0.0);
+        return vec2f(0.0);
     }
-    let wm = h * inverseSqrt(length2);
-    return vec4f(wm, ggx_distribution(wm, alpha) * ggx_visibility(wo, wi, alpha, masking));
+    // The cosine is half the length of the sum of two unit vectors.
+    let length = sqrt(length2);
+    return vec2f(0.5 * length, ggx_distribution(h / length, alpha) * ggx_visibility(wo, wi, alpha, masking));
 }
 
 // Single-scattering BRDF, without the cosine.
 fn ggx_eval(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel: Fresnel, masking: u32) -> vec3f {
-    let half_vector = ggx_half(wo, wi, alpha, masking);
-    if half_vector.w == 0.0 {
+    let facet = ggx_microfacet(wo, wi, alpha, masking);
+    if facet.y == 0.0 {
         return vec3f(0.0);
     }
-    return half_vector.w * fresnel_eval(fresnel, dot(wi, half_vector.xyz));
+    return facet.y * fresnel_eval(fresnel, facet.x);
 }
 
 // Microfacet normal visible from wo (spherical caps, Dupuy and Benyoub 2023).
@@ -119,7 +120,7 @@ fn ggx_pdf(wo: vec3f, wi: vec3f, alpha: vec2f) -> f32 {
     if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
         return 0.0;
     }
-    return 0.5 * ggx_distribution(h * inverseSqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
+    return 0.5 * ggx_distribution(h / sqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
 }
 
 // A place between two nodes of an axis: index and fraction; x in [0, 1] over `count` nodes.
@@ -156,7 +157,7 @@ fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
     let m = clamp(mu, 0.0, 1.0);
     // At small widths the loss is a function of mu / a: this axis follows it.
     let a = sqrt(0.5 * (along * along + across * across));
-    let x = ggx_albedo_axis(m * (1.0 + a) / (m + a), GGX_ALBEDO_MU);
+    let x = ggx_albedo_axis(sqrt(m * (1.0 + a) / (m + a)), GGX_ALBEDO_MU);
     let y = ggx_albedo_axis_alpha(along);
     let z = ggx_albedo_axis_alpha(across);
     let slab = masking * GGX_ALBEDO_STRIDE + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;

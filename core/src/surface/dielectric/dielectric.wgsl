@@ -8,15 +8,12 @@ fn dielectric_f0(ior: f32, specular: f32, specular_color: vec3f) -> vec3f {
 
 // Share of the light from w that the reflection takes.
 fn dielectric_albedo(w: vec3f, alpha: vec2f, f0: f32, f90: f32, masking: u32) -> f32 {
-    // Where Fresnel rises, at grazing, the width in the plane of the view decides.
-    let ratio = ggx_albedo_schlick_ratio(w.z, ggx_toward(w, alpha).x, masking);
-    return (1.0 - ggx_loss(w, alpha, masking)) * mix(f0, f90, ratio);
+    return (1.0 - ggx_loss(w, alpha, masking)) * mix(f0, f90, ggx_schlick_ratio(w, alpha, masking));
 }
 
 // Its cosine-weighted mean over the hemisphere.
 fn dielectric_albedo_mean(alpha: vec2f, f0: f32, f90: f32, masking: u32) -> f32 {
-    let schlick = 0.5 * (ggx_albedo_schlick_mean(alpha.x, masking) + ggx_albedo_schlick_mean(alpha.y, masking));
-    return f0 * (1.0 - ggx_loss_mean(alpha, masking)) + (f90 - f0) * schlick;
+    return f0 * (1.0 - ggx_loss_mean(alpha, masking)) + (f90 - f0) * ggx_schlick_mean(alpha, masking);
 }
 
 // Matte part below the reflection: BRDF without the cosine. The largest channel of f0 takes from all channels, so that

@@ -6,7 +6,7 @@ mod tests;
 use glam::{Vec2, Vec3};
 
 use super::fresnel::schlick;
-use super::ggx::albedo::{albedo_schlick_mean, albedo_schlick_ratio, loss, loss_mean, toward};
+use super::ggx::albedo::{loss, loss_mean, schlick_mean, schlick_ratio};
 use super::ggx::{self, Masking};
 use super::{Sample, lambert};
 use crate::leaf::Leaf;
@@ -29,15 +29,12 @@ pub fn f0(ior: f32, specular: f32, specular_color: Vec3) -> Vec3 {
 
 /// Share of the light from `w` that the reflection takes: its directional albedo, in [0, 1].
 pub fn albedo(w: Vec3, alpha: Vec2, f0: f32, f90: f32, masking: Masking) -> f32 {
-    // Where Fresnel rises, at grazing, the width in the plane of the view decides.
-    let ratio = albedo_schlick_ratio(w.z, toward(w, alpha).x, masking);
-    (1.0 - loss(w, alpha, masking)) * (f0 + (f90 - f0) * ratio)
+    (1.0 - loss(w, alpha, masking)) * (f0 + (f90 - f0) * schlick_ratio(w, alpha, masking))
 }
 
 /// Cosine-weighted mean of [`albedo`] over the hemisphere.
 pub fn albedo_mean(alpha: Vec2, f0: f32, f90: f32, masking: Masking) -> f32 {
-    let schlick = 0.5 * (albedo_schlick_mean(alpha.x, masking) + albedo_schlick_mean(alpha.y, masking));
-    f0 * (1.0 - loss_mean(alpha, masking)) + (f90 - f0) * schlick
+    f0 * (1.0 - loss_mean(alpha, masking)) + (f90 - f0) * schlick_mean(alpha, masking)
 }
 
 /// Matte part below the reflection: BRDF without the cosine, `base (1 - E(wo))(1 - E(wi)) / (pi (1 - E_avg))`.

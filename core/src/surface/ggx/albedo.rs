@@ -22,9 +22,9 @@ pub const ALBEDO_LOSS_MEAN: u32 = ALBEDO_MU * ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// Offset of the Schlick ratios.
 pub const ALBEDO_SCHLICK: u32 = ALBEDO_LOSS_MEAN + ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// Offset of the mean Schlick albedos.
-pub const ALBEDO_SCHLICK_MEAN: u32 = ALBEDO_SCHLICK + ALBEDO_MU * ALBEDO_ALPHA;
+pub const ALBEDO_SCHLICK_MEAN: u32 = ALBEDO_SCHLICK + ALBEDO_MU * ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// Entries of one masking.
-pub const ALBEDO_STRIDE: u32 = ALBEDO_SCHLICK_MEAN + ALBEDO_ALPHA;
+pub const ALBEDO_STRIDE: u32 = ALBEDO_SCHLICK_MEAN + ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// `ALPHA_MIN^(1/4)`, where the alpha axis starts.
 pub const ALBEDO_ROOT_MIN: f32 = 0.177_827_94;
 /// How far the slopes across the view are narrowed by those along it; fitted, see [`toward`].
@@ -45,85 +45,68 @@ impl AlbedoTable {
     }
 
     /// `2 * ALBEDO_STRIDE` entries for a storage buffer, from which the pass serves `ggx_albedo_entry`. Per masking:
-    /// root of the loss over (width across, width along, cosine), mean loss over its `alpha^2` over both widths,
-    /// Schlick ratio over (width, cosine), mean Schlick albedo over the width; the last named runs fastest.
+    /// root of the loss over (width across, width along, cosine), mean loss divided by the mean `alpha^2` over both
+    /// widths, Schlick ratio and mean Schlick albedo likewise; the last named runs fastest.
     pub fn flat(&self) -> &[f32] {
         &self.flat
     }
 
     fn new() -> AlbedoTable {
         let mut table = AlbedoTable { flat: vec![0.0; 2 * ALBEDO_STRIDE as usize] };
-        table.fill_loss();
-        table.fill_schlick();
+        table.fill_directions();
         let polar = GaussLegendre::new(32);
         for row in 0..ALBEDO_ALPHA * ALBEDO_ALPHA {
-            table.fill_loss_mean(row, &polar);
-        }
-        for row in 0..ALBEDO_ALPHA {
-            table.fill_schlick_mean(row, &polar);
+            table.fill_means(row, &polar);
         }
         table
     }
 
-    /// Roots of the loss.
-    fn fill_loss(&mut self) {
-        let losses: Vec<[f64; 2]> = (0..ALBEDO_LOSS_MEAN)
+    /// Roots of the loss and Schlick ratios.
+    fn fill_directions(&mut self) {
+        let entries: Vec<([f64; 2], [f64; 2])> = (0..ALBEDO_LOSS_MEAN)
             .into_par_iter()
             .map(|entry| {
                 let (column, row) = (entry % ALBEDO_MU, entry / ALBEDO_MU);
                 let (along, across) = (node_alpha(row % ALBEDO_ALPHA), node_alpha(row / ALBEDO_ALPHA));
+                let x2 = (f64::from(column) / f64::from(ALBEDO_MU - 1)).powi(2);
                 // Inverse of x^2 = mu (1 + a) / (mu + a).
-                let (x2, a) = (node_x(column).powi(2), (0.5 * (along * along + across * across)).sqrt());
-                reflection::loss(a * x2 / (1.0 + a - x2), along, across)
+                let a = (0.5 * (along * along + across * across)).sqrt();
+                let loss = reflection::loss(a * x2 / (1.0 + a - x2), along, across);
+                (loss, reflection::schlick_ratio(x2, along, across))
             })
             .collect();
-        for (entry, loss) in losses.iter().enumerate() {
+        for (entry, (loss, ratio)) in entries.iter().enumerate() {
             for m in 0..2 {
-                self.flat[m * ALBEDO_STRIDE as usize + entry] = loss[m].max(0.0).sqrt() as f32;
+                let first = m * ALBEDO_STRIDE as usize + entry;
+                self.flat[first] = loss[m].max(0.0).sqrt() as f32;
+                self.flat[first + ALBEDO_SCHLICK as usize] = ratio[m] as f32;
             }
         }
     }
 
-    /// Schlick ratios.
-    fn fill_schlick(&mut self) {
-        for entry in 0..ALBEDO_MU * ALBEDO_ALPHA {
-            let mu = node_x(entry % ALBEDO_MU).powi(2);
-            let ratios = reflection::schlick_ratio(mu, node_alpha(entry / ALBEDO_MU));
-            for m in 0..2 {
-                self.flat[(m as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK + entry) as usize] = ratios[m] as f32;
-            }
-        }
-    }
-
-    /// Mean over the hemisphere of what the interpolated losses give, so that both belong together.
-    fn fill_loss_mean(&mut self, row: u32, polar: &GaussLegendre) {
+    /// Means over the hemisphere of what the interpolated entries give, so that both belong together.
+    fn fill_means(&mut self, row: u32, polar: &GaussLegendre) {
         const AZIMUTHS: u32 = 8;
         let alpha = Vec2::new(node_alpha(row % ALBEDO_ALPHA) as f32, node_alpha(row / ALBEDO_ALPHA) as f32);
         for masking in Masking::ALL {
-            let mut sum = 0.0;
-            for (mu, weight) in cosines(polar) {
+            let (mut lost, mut schlick) = (0.0, 0.0);
+            for &(t, weight) in polar.nodes() {
+                // The fourth power crowds the nodes at mu ~ alpha.
+                let mu = t.powi(4);
                 let sin_theta = ((1.0 - mu) * (1.0 + mu)).sqrt() as f32;
                 for i in 0..AZIMUTHS {
                     let phi = std::f32::consts::FRAC_PI_2 * (i as f32 + 0.5) / AZIMUTHS as f32;
                     let w = (sin_theta * Vec2::from_angle(phi)).extend(mu as f32);
-                    sum += weight * f64::from(self.loss(w, alpha, masking)) / f64::from(AZIMUTHS);
+                    let measure = weight * 8.0 * t.powi(7) / f64::from(AZIMUTHS);
+                    let loss = f64::from(self.loss(w, alpha, masking));
+                    lost += measure * loss;
+                    schlick += measure * (1.0 - loss) * f64::from(self.schlick_ratio(w, alpha, masking));
                 }
             }
-            let entry = (masking as u32 * ALBEDO_STRIDE + ALBEDO_LOSS_MEAN + row) as usize;
-            self.flat[entry] = (sum / (0.5 * f64::from(alpha.length_squared()))) as f32;
-        }
-    }
-
-    /// Mean over the hemisphere of the interpolated Schlick albedo.
-    fn fill_schlick_mean(&mut self, row: u32, polar: &GaussLegendre) {
-        let alpha = node_alpha(row) as f32;
-        for masking in Masking::ALL {
-            let mut sum = 0.0;
-            for (mu, weight) in cosines(polar) {
-                let reflected = 1.0 - self.loss_in_plane(mu as f32, alpha, alpha, masking);
-                sum += weight * f64::from(reflected * self.schlick_ratio(mu as f32, alpha, masking));
-            }
-            self.flat[(masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK_MEAN + row) as usize] = sum as f32;
+            let first = masking as u32 * ALBEDO_STRIDE + row;
+            let alpha2 = 0.5 * f64::from(alpha.length_squared());
+            self.flat[(first + ALBEDO_LOSS_MEAN) as usize] = (lost / alpha2) as f32;
+            self.flat[(first + ALBEDO_SCHLICK_MEAN) as usize] = schlick as f32;
         }
     }
 
@@ -135,18 +118,27 @@ impl AlbedoTable {
     fn loss_in_plane(&self, mu: f32, along: f32, across: f32, masking: Masking) -> f32 {
         let m = mu.clamp(0.0, 1.0);
         let a = (0.5 * (along * along + across * across)).sqrt();
-        let x = Axis::new((m * (1.0 + a) / (m + a)).sqrt(), ALBEDO_MU);
-        let (y, z) = (Axis::of_alpha(along), Axis::of_alpha(across));
-        let slab = masking as u32 * ALBEDO_STRIDE + z.index * ALBEDO_MU * ALBEDO_ALPHA;
-        let next = slab + ALBEDO_MU * ALBEDO_ALPHA;
-        let root = z.mix(self.plane(slab, x, y, ALBEDO_MU), self.plane(next, x, y, ALBEDO_MU));
+        let x = (m * (1.0 + a) / (m + a)).sqrt();
+        let root = self.volume(masking as u32 * ALBEDO_STRIDE, x, along, across);
         root * root
     }
 
-    fn schlick_ratio(&self, mu: f32, alpha: f32, masking: Masking) -> f32 {
+    fn schlick_ratio(&self, w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
+        let widths = toward(w, alpha);
         let first = masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK;
-        let x = Axis::new(mu.clamp(0.0, 1.0).sqrt(), ALBEDO_MU);
-        self.plane(first, x, Axis::of_alpha(alpha), ALBEDO_MU)
+        self.volume(first, w.z.clamp(0.0, 1.0).sqrt(), widths.x, widths.y)
+    }
+
+    fn mean(&self, first: u32, alpha: Vec2) -> f32 {
+        self.plane(first, Axis::of_alpha(alpha.x), Axis::of_alpha(alpha.y), ALBEDO_ALPHA)
+    }
+
+    /// Trilinear interpolation of the table over both widths and the cosine that starts at `first`.
+    fn volume(&self, first: u32, x: f32, along: f32, across: f32) -> f32 {
+        let (x, y, z) = (Axis::new(x, ALBEDO_MU), Axis::of_alpha(along), Axis::of_alpha(across));
+        let slab = first + z.index * ALBEDO_MU * ALBEDO_ALPHA;
+        let next = slab + ALBEDO_MU * ALBEDO_ALPHA;
+        z.mix(self.plane(slab, x, y, ALBEDO_MU), self.plane(next, x, y, ALBEDO_MU))
     }
 
     /// Bilinear interpolation of rows of `width` entries from `first`.
@@ -188,20 +180,10 @@ impl Axis {
     }
 }
 
-/// Cosines and weights of a mean over the hemisphere; the fourth power crowds the nodes at mu ~ alpha.
-fn cosines(rule: &GaussLegendre) -> impl Iterator<Item = (f64, f64)> {
-    rule.nodes().iter().map(|&(t, weight)| (t.powi(4), weight * 8.0 * t.powi(7)))
-}
-
 /// Width at a node of its axis.
 fn node_alpha(node: u32) -> f64 {
     let root = f64::from(ALBEDO_ROOT_MIN);
     (root + f64::from(node) / f64::from(ALBEDO_ALPHA - 1) * (1.0 - root)).powi(4)
-}
-
-/// A node of the cosine's axis in [0, 1].
-fn node_x(node: u32) -> f64 {
-    f64::from(node) / f64::from(ALBEDO_MU - 1)
 }
 
 /// Widths along the plane of `w` and across it, for which the table is looked up.
@@ -234,8 +216,7 @@ pub fn loss(w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
 pub fn loss_mean(alpha: Vec2, masking: Masking) -> f32 {
     let a = clamp_alpha(alpha);
     let first = masking as u32 * ALBEDO_STRIDE + ALBEDO_LOSS_MEAN;
-    let (x, y) = (Axis::of_alpha(a.x), Axis::of_alpha(a.y));
-    0.5 * a.length_squared() * TABLE.plane(first, x, y, ALBEDO_ALPHA)
+    0.5 * a.length_squared() * TABLE.mean(first, a)
 }
 
 /// Directional albedo of single scattering when F = 1, `E`, at cosine `mu` for the isotropic width `alpha`.
@@ -249,13 +230,13 @@ pub fn albedo_mean(alpha: f32, masking: Masking) -> f32 {
     1.0 - loss_mean(Vec2::splat(alpha), masking)
 }
 
-/// Mean of `(1 - x)^5` over the reflected light, x = cosine at the microfacet: the directional albedo for the curve
-/// `f0 + (f90 - f0)(1 - x)^5` is `E mix(f0, f90, this)`.
-pub fn albedo_schlick_ratio(mu: f32, alpha: f32, masking: Masking) -> f32 {
-    TABLE.schlick_ratio(mu, alpha, masking)
+/// Mean of `(1 - x)^5` over the light that is reflected toward `w`, x = cosine at the microfacet: the directional albedo
+/// for the curve `f0 + (f90 - f0)(1 - x)^5` is `E mix(f0, f90, this)`.
+pub fn schlick_ratio(w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
+    TABLE.schlick_ratio(w, alpha, masking)
 }
 
-/// Cosine-weighted mean over the hemisphere of `E` times [`albedo_schlick_ratio`].
-pub fn albedo_schlick_mean(alpha: f32, masking: Masking) -> f32 {
-    TABLE.line(masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK_MEAN, Axis::of_alpha(alpha))
+/// Cosine-weighted mean over the hemisphere of `E` times [`schlick_ratio`].
+pub fn schlick_mean(alpha: Vec2, masking: Masking) -> f32 {
+    TABLE.mean(masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK_MEAN, alpha)
 }

@@ -8,12 +8,12 @@ const GGX_SEPARABLE: u32 = 1u;
 // Nodes of the albedo tables over the cosine and over either width.
 const GGX_ALBEDO_MU: u32 = 24u;
 const GGX_ALBEDO_ALPHA: u32 = 16u;
-// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss / alpha^2
-// over both widths, the Schlick ratio over (width, cosine), the mean Schlick albedo; the last named runs fastest.
+// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss divided by
+// the mean alpha^2 over both widths, Schlick ratio and mean Schlick albedo likewise; the last named runs fastest.
 const GGX_ALBEDO_LOSS_MEAN: u32 = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 const GGX_ALBEDO_SCHLICK: u32 = GGX_ALBEDO_LOSS_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
-const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 // alpha_min^(1/4), where the alpha axis of the tables starts.
 const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
 // How far the slopes across the view are narrowed by those along it.
@@ -152,18 +152,29 @@ fn ggx_albedo_plane(first: u32, x: GgxAxis, y: GgxAxis, width: u32) -> f32 {
     return mix(ggx_albedo_line(row, x), ggx_albedo_line(row + width, x), y.fraction);
 }
 
+// Trilinear interpolation of the table over both widths and the cosine that starts at `first`.
+fn ggx_albedo_volume(first: u32, x: f32, along: f32, across: f32) -> f32 {
+    let column = ggx_albedo_axis(x, GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(along);
+    let z = ggx_albedo_axis_alpha(across);
+    let slab = first + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let near = ggx_albedo_plane(slab, column, y, GGX_ALBEDO_MU);
+    return mix(near, ggx_albedo_plane(next, column, y, GGX_ALBEDO_MU), z.fraction);
+}
+
+// Table over both widths that starts at `first`.
+fn ggx_albedo_over_widths(first: u32, alpha: vec2f) -> f32 {
+    return ggx_albedo_plane(first, ggx_albedo_axis_alpha(alpha.x), ggx_albedo_axis_alpha(alpha.y), GGX_ALBEDO_ALPHA);
+}
+
 // Loss at cosine mu for the widths in the plane of the view and across it.
 fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
     let m = clamp(mu, 0.0, 1.0);
     // At small widths the loss is a function of mu / a: this axis follows it.
     let a = sqrt(0.5 * (along * along + across * across));
-    let x = ggx_albedo_axis(sqrt(m * (1.0 + a) / (m + a)), GGX_ALBEDO_MU);
-    let y = ggx_albedo_axis_alpha(along);
-    let z = ggx_albedo_axis_alpha(across);
-    let slab = masking * GGX_ALBEDO_STRIDE + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-    let near = ggx_albedo_plane(slab, x, y, GGX_ALBEDO_MU);
-    let root = mix(near, ggx_albedo_plane(next, x, y, GGX_ALBEDO_MU), z.fraction);
+    let x = sqrt(m * (1.0 + a) / (m + a));
+    let root = ggx_albedo_volume(masking * GGX_ALBEDO_STRIDE, x, along, across);
     return root * root;
 }
 
@@ -192,8 +203,7 @@ fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
 fn ggx_loss_mean(alpha: vec2f, masking: u32) -> f32 {
     let a = ggx_clamp_alpha(alpha);
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_LOSS_MEAN;
-    let x = ggx_albedo_axis_alpha(a.x);
-    return 0.5 * dot(a, a) * ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(a.y), GGX_ALBEDO_ALPHA);
+    return 0.5 * dot(a, a) * ggx_albedo_over_widths(first, a);
 }
 
 // Directional albedo of single scattering when F = 1, at cosine mu for the isotropic width alpha.
@@ -207,17 +217,17 @@ fn ggx_albedo_mean(alpha: f32, masking: u32) -> f32 {
     return 1.0 - ggx_loss_mean(vec2f(alpha), masking);
 }
 
-// Mean of (1 - x)^5 over the reflected light, x = cosine at the microfacet: with f0 and f90 the directional albedo is
-// E mix(f0, f90, this).
-fn ggx_albedo_schlick_ratio(mu: f32, alpha: f32, masking: u32) -> f32 {
+// Mean of (1 - x)^5 over the light that is reflected toward w, x = cosine at the microfacet: with f0 and f90 the
+// directional albedo is E mix(f0, f90, this).
+fn ggx_schlick_ratio(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    let widths = ggx_toward(w, alpha);
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK;
-    let x = ggx_albedo_axis(sqrt(clamp(mu, 0.0, 1.0)), GGX_ALBEDO_MU);
-    return ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(alpha), GGX_ALBEDO_MU);
+    return ggx_albedo_volume(first, sqrt(clamp(w.z, 0.0, 1.0)), widths.x, widths.y);
 }
 
-// Cosine-weighted mean of E times ggx_albedo_schlick_ratio.
-fn ggx_albedo_schlick_mean(alpha: f32, masking: u32) -> f32 {
-    return ggx_albedo_line(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, ggx_albedo_axis_alpha(alpha));
+// Cosine-weighted mean over the hemisphere of E times ggx_schlick_ratio.
+fn ggx_schlick_mean(alpha: vec2f, masking: u32) -> f32 {
+    return ggx_albedo_over_widths(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, alpha);
 }
 
 // Light that leaves after more than one bounce: BRDF without the cosine, reciprocal.

@@ -125,9 +125,8 @@ pub fn assert_samplers(cases: &[SamplerCase]) {
     let mut failures = Vec::new();
     for (seed, case) in cases.iter().enumerate() {
         let mut random = Random::new(1000 + seed as u64);
-        let test = sphere_chi_square(case.grid, 1_000_000, &|w| f64::from((case.pdf)(w)), || {
-            (case.sample)(random.point3())
-        });
+        let test =
+            sphere_chi_square(case.grid, 1_000_000, &|w| f64::from((case.pdf)(w)), || (case.sample)(random.point3()));
         let SamplerCase { name, .. } = case;
         println!("{name}: p {:.4}, mass {:.6}, {} cells", test.p_value, test.mass, test.degrees + 1);
         if test.p_value < level || test.mass > 1.0 + 1e-3 || test.degrees < 20 {

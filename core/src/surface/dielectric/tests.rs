@@ -15,9 +15,8 @@ fn returned(wo: Vec3, alpha: Vec2, masking: Masking, polar: &GaussLegendre) -> f
     let surface = glass(alpha, masking);
     let fresnel = Fresnel::Rescaled { f0: surface.f0 };
     let reflected = sampled_albedo(48, |u| ggx::sample(wo, alpha, &fresnel, masking, u));
-    let below = smooth_albedo(polar, 16, |wi| {
-        base(wo, wi, alpha, surface.f0, surface.f90, surface.base_color, masking).x
-    });
+    let below =
+        smooth_albedo(polar, 16, |wi| base(wo, wi, alpha, surface.f0, surface.f90, surface.base_color, masking).x);
     reflected + below
 }
 
@@ -50,8 +49,10 @@ fn under_grooves_it_returns_all_light_within_a_few_percent() {
                 most = most.max(total);
             }
             println!("{masking:?} {alpha}: {least:.4} to {most:.4}");
-            // As for metal, the tables are exact in the plane of the grooves and across it, an estimate in between.
-            assert!(least > 0.9 && most < 1.05, "{masking:?} {alpha}: {least} {most}");
+            // As for metal, the tables are exact in the plane of the grooves and across it, an estimate in between,
+            // worst at grazing over grooves a hundred times longer than wide.
+            let gain = if alpha.min_element() < 0.05 * alpha.max_element() { 0.12 } else { 0.02 };
+            assert!(least > 0.98 && most < 1.0 + gain, "{masking:?} {alpha}: {least} {most}");
         }
     }
 }

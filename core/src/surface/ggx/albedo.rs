@@ -27,8 +27,8 @@ pub const ALBEDO_SCHLICK_MEAN: u32 = ALBEDO_SCHLICK + ALBEDO_MU * ALBEDO_ALPHA *
 pub const ALBEDO_STRIDE: u32 = ALBEDO_SCHLICK_MEAN + ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// `ALPHA_MIN^(1/4)`, where the alpha axis starts.
 pub const ALBEDO_ROOT_MIN: f32 = 0.177_827_94;
-/// How far the slopes across the view are narrowed by those along it; fitted, see [`toward`].
-pub const ALBEDO_ANISOTROPY: f32 = 0.42;
+/// How far the slopes across the view are narrowed for the loss, see [`toward`]; for the Schlick ratio they are not.
+pub const ALBEDO_NARROWING: f32 = 0.42;
 
 /// The tables of both maskings in one flat array.
 #[derive(Debug)]
@@ -111,7 +111,7 @@ impl AlbedoTable {
     }
 
     fn loss(&self, w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
-        let widths = toward(w, alpha);
+        let widths = toward(w, alpha, ALBEDO_NARROWING);
         self.loss_in_plane(w.z, widths.x, widths.y, masking)
     }
 
@@ -124,7 +124,7 @@ impl AlbedoTable {
     }
 
     fn schlick_ratio(&self, w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
-        let widths = toward(w, alpha);
+        let widths = toward(w, alpha, 0.0);
         let first = masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK;
         self.volume(first, w.z.clamp(0.0, 1.0).sqrt(), widths.x, widths.y)
     }
@@ -190,10 +190,10 @@ fn node_alpha(node: u32) -> f64 {
 ///
 /// Slopes have the covariance `diag(at^2, ab^2)`. Along the azimuth phi of `w` their width is `p`; across it `q`, which
 /// shrinks to `at ab / p` once the slope along is known. The loss lies between: `p^2 = mix(ab^2, at^2, cos^2 phi)` and
-/// `q^2 = mix(mix(at^2, ab^2, cos^2 phi), (at ab / p)^2, ` [`ALBEDO_ANISOTROPY`]`)`. Toward the normal phi turns to the
+/// `q^2 = mix(mix(at^2, ab^2, cos^2 phi), (at ab / p)^2, narrowing)`, fitted for each table. Toward the normal phi turns to the
 /// wider axis, so that nothing jumps where it is undefined. Exact for equal widths, at the normal and along the wider
 /// axis.
-pub fn toward(w: Vec3, alpha: Vec2) -> Vec2 {
+pub fn toward(w: Vec3, alpha: Vec2, narrowing: f32) -> Vec2 {
     let a = clamp_alpha(alpha);
     let a2 = a * a;
     let cos2 = 1.0 - w.x * w.x - w.y * w.y;
@@ -204,7 +204,7 @@ pub fn toward(w: Vec3, alpha: Vec2) -> Vec2 {
     let p2 = a2.y + (a2.x - a2.y) * c;
     let q2 = a2.x + (a2.y - a2.x) * c;
     let narrowed2 = a2.x * a2.y / p2;
-    Vec2::new(p2, q2 + (narrowed2 - q2) * ALBEDO_ANISOTROPY).map(f32::sqrt)
+    Vec2::new(p2, q2 + (narrowed2 - q2) * narrowing).map(f32::sqrt)
 }
 
 /// Energy that single scattering loses when F = 1: `1 - E(w)`. Error of the table 5e-3 for equal widths.

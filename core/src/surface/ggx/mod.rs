@@ -125,9 +125,7 @@ pub fn visibility(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> f32 {
 /// the horizon.
 pub fn microfacet(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
     match half_vector(wo, wi) {
-        Some((wm, cos_theta)) => {
-            Vec2::new(cos_theta, distribution(wm, alpha) * visibility(wo, wi, alpha, masking))
-        }
+        Some((wm, cos_theta)) => Vec2::new(cos_theta, distribution(wm, alpha) * visibility(wo, wi, alpha, masking)),
         None => Vec2::ZERO,
     }
 }

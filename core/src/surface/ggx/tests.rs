@@ -226,8 +226,13 @@ fn the_brdf_is_reciprocal_and_finite() {
     let fresnel = Fresnel::rescaled(Vec3::new(0.2, 1.0, 3.0), Vec3::new(3.0, 2.0, 3.0));
     for masking in Masking::ALL {
         for alpha in alphas().step_by(3).map(Vec2::splat).chain(ANISOTROPIC) {
-            let metal =
-                Conductor { alpha, fresnel: &fresnel, fresnel_mean: fresnel.mean(), masking, multiple_scattering: true };
+            let metal = Conductor {
+                alpha,
+                fresnel: &fresnel,
+                fresnel_mean: fresnel.mean(),
+                masking,
+                multiple_scattering: true,
+            };
             assert_reciprocal("single", |wo, wi| eval(wo, wi, alpha, &fresnel, masking));
             assert_reciprocal("multiple", |wo, wi| multiple(wo, wi, alpha, Vec3::ONE, masking));
             assert_finite("metal", |wo, wi| metal.eval(wo, wi));

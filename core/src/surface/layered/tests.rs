@@ -66,9 +66,7 @@ fn the_whole_is_reciprocal_and_finite_also_under_a_tilted_coat() {
         for masking in Masking::ALL {
             let surface = everything(alpha, masking);
             assert_reciprocal("layered", |wo, wi| response(&surface, wo, wi, wo, wi) / wi.z);
-            assert_finite("layered", |wo, wi| {
-                response(&surface, wo, wi, tilt.to_local(wo), tilt.to_local(wi))
-            });
+            assert_finite("layered", |wo, wi| response(&surface, wo, wi, tilt.to_local(wo), tilt.to_local(wi)));
         }
     }
 }

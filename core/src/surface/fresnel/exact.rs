@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Fresnel;
+use crate::math::bounded;
 use crate::math::quadrature::GaussLegendre;
 
 /// Least real index of [`conductor`]: at n = k = 0 the reflectance is undefined.
@@ -47,8 +48,8 @@ fn complex_sqrt(re: f64, im: f64) -> (f64, f64) {
 /// The form without tangents (finite at 90 degrees), with the real part of the root taken from the imaginary one where
 /// it would cancel, as it does for most metals.
 pub fn conductor(n: f32, k: f32, cos_theta: f32) -> f32 {
-    let eta = n.max(INDEX_MIN).min(INDEX_MAX);
-    let kappa = k.max(0.0).min(INDEX_MAX);
+    let eta = bounded(n, INDEX_MIN, INDEX_MAX);
+    let kappa = bounded(k, 0.0, INDEX_MAX);
     let c = cos_theta.clamp(0.0, 1.0);
     let c2 = c * c;
     let s2 = (1.0 - c) * (1.0 + c);

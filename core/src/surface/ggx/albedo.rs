@@ -11,6 +11,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::{ALPHA_MIN, Masking, clamp_alpha, reflection};
+use crate::math::bounded;
 use crate::math::quadrature::GaussLegendre;
 
 /// Nodes over the cosine.
@@ -164,14 +165,14 @@ struct Axis {
 impl Axis {
     /// `x` in [0, 1] over `count` nodes.
     fn new(x: f32, count: u32) -> Axis {
-        let scaled = x.max(0.0).min(1.0) * (count - 1) as f32;
+        let scaled = bounded(x, 0.0, 1.0) * (count - 1) as f32;
         let index = (scaled as u32).min(count - 2);
         Axis { index, fraction: scaled - index as f32 }
     }
 
     /// A width on its axis.
     fn of_alpha(alpha: f32) -> Axis {
-        let root = alpha.max(ALPHA_MIN).min(1.0).sqrt().sqrt();
+        let root = bounded(alpha, ALPHA_MIN, 1.0).sqrt().sqrt();
         Axis::new((root - ALBEDO_ROOT_MIN) / (1.0 - ALBEDO_ROOT_MIN), ALBEDO_ALPHA)
     }
 
@@ -221,7 +222,7 @@ pub fn loss_mean(alpha: Vec2, masking: Masking) -> f32 {
 
 /// Directional albedo of single scattering when F = 1, `E`, at cosine `mu` for the isotropic width `alpha`.
 pub fn albedo(mu: f32, alpha: f32, masking: Masking) -> f32 {
-    let a = alpha.max(ALPHA_MIN).min(1.0);
+    let a = bounded(alpha, ALPHA_MIN, 1.0);
     1.0 - TABLE.loss_in_plane(mu, a, a, masking)
 }
 

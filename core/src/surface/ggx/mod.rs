@@ -23,6 +23,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 use super::Sample;
 use super::fresnel::Fresnel;
 use crate::leaf::Leaf;
+use crate::math::bounded;
 
 pub use conductor::Conductor;
 pub use multiple::multiple;
@@ -60,8 +61,7 @@ impl Masking {
 
 /// `alpha` within its domain; what is not a number becomes the floor.
 pub fn clamp_alpha(alpha: Vec2) -> Vec2 {
-    // f32::max and min pass over a NaN.
-    Vec2::new(alpha.x.max(ALPHA_MIN).min(1.0), alpha.y.max(ALPHA_MIN).min(1.0))
+    Vec2::new(bounded(alpha.x, ALPHA_MIN, 1.0), bounded(alpha.y, ALPHA_MIN, 1.0))
 }
 
 /// True when the surface is smoother than this model draws it.

@@ -21,11 +21,7 @@ impl Frame {
         let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
         let a = -1.0 / (s + n.z);
         let c = n.x * n.y * a;
-        Frame {
-            t: Vec3::new(1.0 + s * n.x * n.x * a, s * c, -s * n.x),
-            b: Vec3::new(c, s + n.y * n.y * a, -n.y),
-            n,
-        }
+        Frame { t: Vec3::new(1.0 + s * n.x * n.x * a, s * c, -s * n.x), b: Vec3::new(c, s + n.y * n.y * a, -n.y), n }
     }
 
     /// The frame about the unit vector `n` whose tangent is as near to `tangent` as it can be, with bitangent

@@ -17,3 +17,8 @@ pub static WGSL: Leaf = Leaf { name: "math", source: include_str!("math.wgsl"), 
 
 /// The WGSL twins of this folder.
 pub static LEAVES: &[&Leaf] = &[&WGSL];
+
+/// `x` in `[least, most]`; what is not a number becomes `least`, where `f32::clamp` would let it pass.
+pub fn bounded(x: f32, least: f32, most: f32) -> f32 {
+    x.max(least).min(most)
+}

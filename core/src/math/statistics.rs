@@ -69,11 +69,8 @@ impl SphereGrid {
             let ring = solid_angle * height / v;
             ring * rule.integrate(part.t0, part.t1, |t| {
                 let (sin_phi, cos_phi) = (TAU * t).sin_cos();
-                let local = Vec3::new(
-                    (sin_theta * cos_phi) as f32,
-                    (sin_theta * sin_phi) as f32,
-                    (1.0 - 2.0 * height) as f32,
-                );
+                let local =
+                    Vec3::new((sin_theta * cos_phi) as f32, (sin_theta * sin_phi) as f32, (1.0 - 2.0 * height) as f32);
                 pdf(frame.to_world(local))
             })
         })
@@ -136,13 +133,14 @@ pub fn sphere_chi_square(
         .map(|cell| {
             let (ring, sector) = ((cell / grid.sectors) as f64, (cell % grid.sectors) as f64);
             let (rings, sectors) = (grid.rings as f64, grid.sectors as f64);
-            let part = Part {
-                v0: ring / rings,
-                v1: (ring + 1.0) / rings,
-                t0: sector / sectors,
-                t1: (sector + 1.0) / sectors,
-            };
-            refine(integrate(part), part, tolerance, 6, &integrate)
+            let part =
+                Part { v0: ring / rings, v1: (ring + 1.0) / rings, t0: sector / sectors, t1: (sector + 1.0) / sectors };
+            // Split twice at least: the four nodes of a rule may all miss the corner where a density begins.
+            part.quarters()
+                .iter()
+                .flat_map(|quarter| quarter.quarters())
+                .map(|part| refine(integrate(part), part, tolerance, 4, &integrate))
+                .sum()
         })
         .collect();
     let mass: f64 = expected.iter().sum();

@@ -3,11 +3,11 @@ use std::f64::consts::PI;
 use glam::{Vec2, Vec3};
 
 use super::frame::Frame;
+use super::oct;
 use super::quadrature::GaussLegendre;
 use super::sampling::{self, Random};
 use super::special::{gamma_q, ln_gamma};
 use super::statistics::{SphereGrid, chi_square, sidak, sphere_chi_square};
-use super::oct;
 
 /// Rounding of a few f32 operations on numbers near one.
 const ROUNDING: f32 = 1e-6;
@@ -66,8 +66,7 @@ fn the_chi_square_test_refuses_a_sampler_that_is_off_by_a_few_percent() {
     let mut random = Random::new(3);
     let tilted = |w: Vec3| f64::from(w.z.max(0.0)) / PI * (1.0 + 0.1 * (f64::from(w.z) - 2.0 / 3.0));
     for grid in [SphereGrid::uniform(), SphereGrid::around(Vec3::new(0.6, 0.0, 0.8), 0.3)] {
-        let test =
-            sphere_chi_square(grid, 1_000_000, &tilted, || Some(sampling::cosine_hemisphere(random.point2())));
+        let test = sphere_chi_square(grid, 1_000_000, &tilted, || Some(sampling::cosine_hemisphere(random.point2())));
         assert!(test.p_value < 1e-6, "{test:?}");
     }
 }

@@ -10,6 +10,9 @@ pub mod ggx;
 pub mod lambert;
 pub mod layered;
 
+#[cfg(test)]
+mod facts;
+
 use glam::Vec3;
 
 use crate::leaf::Leaf;

@@ -5,8 +5,8 @@ const COAT_F0: f32 = 0.04;
 
 // The coat's reflection for weight 1: BRDF without the cosine.
 fn coat_eval(wo: vec3f, wi: vec3f, alpha: f32, masking: u32) -> f32 {
-    let half_vector = ggx_half(wo, wi, vec2f(alpha), masking);
-    return half_vector.w * fresnel_schlick(vec3f(COAT_F0), 1.0, dot(wi, half_vector.xyz)).x;
+    let facet = ggx_microfacet(wo, wi, vec2f(alpha), masking);
+    return facet.y * fresnel_schlick(vec3f(COAT_F0), 1.0, facet.x).x;
 }
 
 // Share of the light that passes a coat of the given weight toward w; applies once toward wo, once toward wi.

@@ -21,8 +21,8 @@ pub const F0: f32 = 0.04;
 
 /// The coat's reflection for weight 1: BRDF without the cosine.
 pub fn eval(wo: Vec3, wi: Vec3, alpha: f32, masking: Masking) -> f32 {
-    let half = ggx::half(wo, wi, Vec2::splat(alpha), masking);
-    half.w * schlick(Vec3::splat(F0), 1.0, wi.dot(half.truncate())).x
+    let facet = ggx::microfacet(wo, wi, Vec2::splat(alpha), masking);
+    facet.y * schlick(Vec3::splat(F0), 1.0, facet.x).x
 }
 
 /// Share of the light that passes a coat of weight `coat` (in [0, 1]) toward `w`.

@@ -6,22 +6,14 @@ fn dielectric_f0(ior: f32, specular: f32, specular_color: vec3f) -> vec3f {
     return specular * min(r * r * specular_color, vec3f(1.0));
 }
 
-// The isotropic width that stands for both where the direction of the grooves matters little.
-fn dielectric_width(alpha: vec2f) -> f32 {
-    let a = ggx_clamp_alpha(alpha);
-    return sqrt(0.5 * dot(a, a));
-}
-
 // Share of the light from w that the reflection takes.
 fn dielectric_albedo(w: vec3f, alpha: vec2f, f0: f32, f90: f32, masking: u32) -> f32 {
-    let ratio = ggx_albedo_schlick_ratio(w.z, dielectric_width(alpha), masking);
-    return (1.0 - ggx_loss(w, alpha, masking)) * mix(f0, f90, ratio);
+    return (1.0 - ggx_loss(w, alpha, masking)) * mix(f0, f90, ggx_schlick_ratio(w, alpha, masking));
 }
 
 // Its cosine-weighted mean over the hemisphere.
 fn dielectric_albedo_mean(alpha: vec2f, f0: f32, f90: f32, masking: u32) -> f32 {
-    let schlick = ggx_albedo_schlick_mean(dielectric_width(alpha), masking);
-    return f0 * (1.0 - ggx_loss_mean(alpha, masking)) + (f90 - f0) * schlick;
+    return f0 * (1.0 - ggx_loss_mean(alpha, masking)) + (f90 - f0) * ggx_schlick_mean(alpha, masking);
 }
 
 // Matte part below the reflection: BRDF without the cosine. The largest channel of f0 takes from all channels, so that
@@ -39,7 +31,7 @@ fn dielectric_base(wo: vec3f, wi: vec3f, alpha: vec2f, f0: vec3f, f90: f32, base
 
 // Reflection and base: BRDF without the cosine.
 fn dielectric_eval(wo: vec3f, wi: vec3f, alpha: vec2f, f0: vec3f, f90: f32, base_color: vec3f, masking: u32) -> vec3f {
-    let half_vector = ggx_half(wo, wi, alpha, masking);
-    let reflected = half_vector.w * fresnel_schlick(f0, f90, dot(wi, half_vector.xyz));
+    let facet = ggx_microfacet(wo, wi, alpha, masking);
+    let reflected = facet.y * fresnel_schlick(f0, f90, facet.x);
     return reflected + dielectric_base(wo, wi, alpha, f0, f90, base_color, masking);
 }

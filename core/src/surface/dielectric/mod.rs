@@ -6,7 +6,7 @@ mod tests;
 use glam::{Vec2, Vec3};
 
 use super::fresnel::schlick;
-use super::ggx::albedo::{albedo_schlick_mean, albedo_schlick_ratio, loss, loss_mean};
+use super::ggx::albedo::{loss, loss_mean, schlick_mean, schlick_ratio};
 use super::ggx::{self, Masking};
 use super::{Sample, lambert};
 use crate::leaf::Leaf;
@@ -27,21 +27,14 @@ pub fn f0(ior: f32, specular: f32, specular_color: Vec3) -> Vec3 {
     specular * (r * r * specular_color).min(Vec3::ONE)
 }
 
-/// The isotropic width that stands for both where the direction of the grooves matters little.
-pub fn width(alpha: Vec2) -> f32 {
-    (0.5 * ggx::clamp_alpha(alpha).length_squared()).sqrt()
-}
-
 /// Share of the light from `w` that the reflection takes: its directional albedo, in [0, 1].
 pub fn albedo(w: Vec3, alpha: Vec2, f0: f32, f90: f32, masking: Masking) -> f32 {
-    let ratio = albedo_schlick_ratio(w.z, width(alpha), masking);
-    (1.0 - loss(w, alpha, masking)) * (f0 + (f90 - f0) * ratio)
+    (1.0 - loss(w, alpha, masking)) * (f0 + (f90 - f0) * schlick_ratio(w, alpha, masking))
 }
 
 /// Cosine-weighted mean of [`albedo`] over the hemisphere.
 pub fn albedo_mean(alpha: Vec2, f0: f32, f90: f32, masking: Masking) -> f32 {
-    let schlick = albedo_schlick_mean(width(alpha), masking);
-    f0 * (1.0 - loss_mean(alpha, masking)) + (f90 - f0) * schlick
+    f0 * (1.0 - loss_mean(alpha, masking)) + (f90 - f0) * schlick_mean(alpha, masking)
 }
 
 /// Matte part below the reflection: BRDF without the cosine, `base (1 - E(wo))(1 - E(wi)) / (pi (1 - E_avg))`.
@@ -63,8 +56,8 @@ pub fn base(wo: Vec3, wi: Vec3, alpha: Vec2, f0: Vec3, f90: f32, base_color: Vec
 
 /// Reflection and base: BRDF without the cosine. `f0` and `f90` in [0, 1].
 pub fn eval(wo: Vec3, wi: Vec3, alpha: Vec2, f0: Vec3, f90: f32, base_color: Vec3, masking: Masking) -> Vec3 {
-    let half = ggx::half(wo, wi, alpha, masking);
-    let reflected = half.w * schlick(f0, f90, wi.dot(half.truncate()));
+    let facet = ggx::microfacet(wo, wi, alpha, masking);
+    let reflected = facet.y * schlick(f0, f90, facet.x);
     reflected + base(wo, wi, alpha, f0, f90, base_color, masking)
 }
 

@@ -7,12 +7,12 @@
 pub fn dielectric(eta: f32, cos_theta: f32) -> f32 {
     let c = cos_theta.clamp(0.0, 1.0);
     let g2 = (eta - 1.0) * (eta + 1.0) + c * c;
-    // Total reflection, or no surface at all where eta is not a number.
-    if !(g2 > 0.0) {
-        return 1.0;
+    if g2 > 0.0 {
+        let g = g2.sqrt();
+        let rs = (c - g) / (c + g);
+        let rp = (eta * eta * c - g) / (eta * eta * c + g);
+        0.5 * (rs * rs + rp * rp)
+    } else {
+        1.0
     }
-    let g = g2.sqrt();
-    let rs = (c - g) / (c + g);
-    let rp = (eta * eta * c - g) / (eta * eta * c + g);
-    0.5 * (rs * rs + rp * rp)
 }

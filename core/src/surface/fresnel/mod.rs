@@ -31,6 +31,15 @@ pub static WGSL: Leaf = Leaf {
 /// Entries of a spectral table.
 pub const TABLE_SIZE: usize = 256;
 
+/// [`Fresnel::Rescaled`] in shaders.
+pub const RESCALED: u32 = 0;
+/// [`Fresnel::Schlick`] in shaders.
+pub const SCHLICK: u32 = 1;
+/// [`Fresnel::Conductor`] in shaders.
+pub const CONDUCTOR: u32 = 2;
+/// [`Fresnel::Spectral`] in shaders.
+pub const SPECTRAL: u32 = 3;
+
 /// A reflectance curve over the cosine of the angle, per channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fresnel {
@@ -67,6 +76,16 @@ impl Fresnel {
     /// The Schlick form of a conductor: F0 ignores the extinction.
     pub fn schlick(n: Vec3) -> Fresnel {
         Fresnel::Schlick { f0: per_channel(n, Vec3::ZERO, f0) }
+    }
+
+    /// The form's number in shaders.
+    pub fn form(&self) -> u32 {
+        match self {
+            Fresnel::Rescaled { .. } => RESCALED,
+            Fresnel::Schlick { .. } => SCHLICK,
+            Fresnel::Conductor { .. } => CONDUCTOR,
+            Fresnel::Spectral { .. } => SPECTRAL,
+        }
     }
 
     /// Reflectance in [0, 1] at `cos_theta`, which is clamped to [0, 1].

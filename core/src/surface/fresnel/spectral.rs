@@ -3,10 +3,11 @@
 use glam::{DVec3, Vec3};
 
 use super::TABLE_SIZE;
+use crate::math::bounded;
 
 /// The table at `cos_theta`, which is clamped to [0, 1]; linear between entries.
 pub fn spectral(table: &[Vec3; TABLE_SIZE], cos_theta: f32) -> Vec3 {
-    let x = cos_theta.max(0.0).min(1.0) * (TABLE_SIZE - 1) as f32;
+    let x = bounded(cos_theta, 0.0, 1.0) * (TABLE_SIZE - 1) as f32;
     let entry = (x as usize).min(TABLE_SIZE - 2);
     table[entry].lerp(table[entry + 1], x - entry as f32)
 }

@@ -8,16 +8,16 @@ const GGX_SEPARABLE: u32 = 1u;
 // Nodes of the albedo tables over the cosine and over either width.
 const GGX_ALBEDO_MU: u32 = 24u;
 const GGX_ALBEDO_ALPHA: u32 = 16u;
-// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss / alpha^2
-// over both widths, the Schlick ratio over (width, cosine), the mean Schlick albedo; the last named runs fastest.
+// The flat array: per masking the root of the loss over (width across, width along, cosine), the mean loss divided by
+// the mean alpha^2 over both widths, Schlick ratio and mean Schlick albedo likewise; the last named runs fastest.
 const GGX_ALBEDO_LOSS_MEAN: u32 = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 const GGX_ALBEDO_SCHLICK: u32 = GGX_ALBEDO_LOSS_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
-const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
+const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 // alpha_min^(1/4), where the alpha axis of the tables starts.
 const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
-// How far the slopes across the view are narrowed by those along it.
-const GGX_ALBEDO_ANISOTROPY: f32 = 0.42;
+// How far the slopes across the view are narrowed for the loss by those along it; for the Schlick ratio they are not.
+const GGX_ALBEDO_NARROWING: f32 = 0.42;
 
 fn ggx_clamp_alpha(alpha: vec2f) -> vec2f {
     return clamp(alpha, vec2f(GGX_ALPHA_MIN), vec2f(1.0));
@@ -72,24 +72,25 @@ fn ggx_shadowing_masking(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> f3
     return 4.0 * max(wo.z, 0.0) * max(wi.z, 0.0) * ggx_visibility(wo, wi, alpha, masking);
 }
 
-// Half vector in xyz and D G / (4 cos cos) in w; 0 where either side is below the horizon.
-fn ggx_half(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> vec4f {
+// x: cosine at the microfacet that reflects wi to wo. y: D G / (4 cos_o cos_i), 0 where either is below the horizon.
+fn ggx_microfacet(wo: vec3f, wi: vec3f, alpha: vec2f, masking: u32) -> vec2f {
     let h = wo + wi;
     let length2 = dot(h, h);
     if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
-        return vec4f(0.0, 0.0, 1.0, 0.0);
+        return vec2f(0.0);
     }
-    let wm = h * inverseSqrt(length2);
-    return vec4f(wm, ggx_distribution(wm, alpha) * ggx_visibility(wo, wi, alpha, masking));
+    // The cosine is half the length of the sum of two unit vectors.
+    let length = sqrt(length2);
+    return vec2f(0.5 * length, ggx_distribution(h / length, alpha) * ggx_visibility(wo, wi, alpha, masking));
 }
 
 // Single-scattering BRDF, without the cosine.
 fn ggx_eval(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel: Fresnel, masking: u32) -> vec3f {
-    let half_vector = ggx_half(wo, wi, alpha, masking);
-    if half_vector.w == 0.0 {
+    let facet = ggx_microfacet(wo, wi, alpha, masking);
+    if facet.y == 0.0 {
         return vec3f(0.0);
     }
-    return half_vector.w * fresnel_eval(fresnel, dot(wi, half_vector.xyz));
+    return facet.y * fresnel_eval(fresnel, facet.x);
 }
 
 // Microfacet normal visible from wo (spherical caps, Dupuy and Benyoub 2023).
@@ -119,7 +120,7 @@ fn ggx_pdf(wo: vec3f, wi: vec3f, alpha: vec2f) -> f32 {
     if wo.z <= 0.0 || wi.z <= 0.0 || length2 < 1e-24 {
         return 0.0;
     }
-    return 0.5 * ggx_distribution(h * inverseSqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
+    return 0.5 * ggx_distribution(h / sqrt(length2), alpha) / (wo.z + ggx_stretched(wo, alpha));
 }
 
 // A place between two nodes of an axis: index and fraction; x in [0, 1] over `count` nodes.
@@ -151,23 +152,34 @@ fn ggx_albedo_plane(first: u32, x: GgxAxis, y: GgxAxis, width: u32) -> f32 {
     return mix(ggx_albedo_line(row, x), ggx_albedo_line(row + width, x), y.fraction);
 }
 
+// Trilinear interpolation of the table over both widths and the cosine that starts at `first`.
+fn ggx_albedo_volume(first: u32, x: f32, along: f32, across: f32) -> f32 {
+    let column = ggx_albedo_axis(x, GGX_ALBEDO_MU);
+    let y = ggx_albedo_axis_alpha(along);
+    let z = ggx_albedo_axis_alpha(across);
+    let slab = first + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
+    let near = ggx_albedo_plane(slab, column, y, GGX_ALBEDO_MU);
+    return mix(near, ggx_albedo_plane(next, column, y, GGX_ALBEDO_MU), z.fraction);
+}
+
+// Table over both widths that starts at `first`.
+fn ggx_albedo_over_widths(first: u32, alpha: vec2f) -> f32 {
+    return ggx_albedo_plane(first, ggx_albedo_axis_alpha(alpha.x), ggx_albedo_axis_alpha(alpha.y), GGX_ALBEDO_ALPHA);
+}
+
 // Loss at cosine mu for the widths in the plane of the view and across it.
 fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
     let m = clamp(mu, 0.0, 1.0);
     // At small widths the loss is a function of mu / a: this axis follows it.
     let a = sqrt(0.5 * (along * along + across * across));
-    let x = ggx_albedo_axis(m * (1.0 + a) / (m + a), GGX_ALBEDO_MU);
-    let y = ggx_albedo_axis_alpha(along);
-    let z = ggx_albedo_axis_alpha(across);
-    let slab = masking * GGX_ALBEDO_STRIDE + z.index * GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-    let next = slab + GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
-    let near = ggx_albedo_plane(slab, x, y, GGX_ALBEDO_MU);
-    let root = mix(near, ggx_albedo_plane(next, x, y, GGX_ALBEDO_MU), z.fraction);
+    let x = sqrt(m * (1.0 + a) / (m + a));
+    let root = ggx_albedo_volume(masking * GGX_ALBEDO_STRIDE, x, along, across);
     return root * root;
 }
 
 // Widths along the plane of w and across it, for which the table is looked up.
-fn ggx_toward(w: vec3f, alpha: vec2f) -> vec2f {
+fn ggx_toward(w: vec3f, alpha: vec2f, narrowing: f32) -> vec2f {
     let a = ggx_clamp_alpha(alpha);
     let a2 = a * a;
     let cos2 = 1.0 - w.x * w.x - w.y * w.y;
@@ -178,12 +190,12 @@ fn ggx_toward(w: vec3f, alpha: vec2f) -> vec2f {
     let p2 = a2.y + (a2.x - a2.y) * c;
     let q2 = a2.x + (a2.y - a2.x) * c;
     let narrowed2 = a2.x * a2.y / p2;
-    return sqrt(vec2f(p2, q2 + (narrowed2 - q2) * GGX_ALBEDO_ANISOTROPY));
+    return sqrt(vec2f(p2, q2 + (narrowed2 - q2) * narrowing));
 }
 
 // Energy that single scattering loses toward w when F = 1.
 fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
-    let widths = ggx_toward(w, alpha);
+    let widths = ggx_toward(w, alpha, GGX_ALBEDO_NARROWING);
     return ggx_loss_in_plane(w.z, widths.x, widths.y, masking);
 }
 
@@ -191,8 +203,7 @@ fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
 fn ggx_loss_mean(alpha: vec2f, masking: u32) -> f32 {
     let a = ggx_clamp_alpha(alpha);
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_LOSS_MEAN;
-    let x = ggx_albedo_axis_alpha(a.x);
-    return 0.5 * dot(a, a) * ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(a.y), GGX_ALBEDO_ALPHA);
+    return 0.5 * dot(a, a) * ggx_albedo_over_widths(first, a);
 }
 
 // Directional albedo of single scattering when F = 1, at cosine mu for the isotropic width alpha.
@@ -206,17 +217,17 @@ fn ggx_albedo_mean(alpha: f32, masking: u32) -> f32 {
     return 1.0 - ggx_loss_mean(vec2f(alpha), masking);
 }
 
-// Mean of (1 - x)^5 over the reflected light, x = cosine at the microfacet: with f0 and f90 the directional albedo is
-// E mix(f0, f90, this).
-fn ggx_albedo_schlick_ratio(mu: f32, alpha: f32, masking: u32) -> f32 {
+// Mean of (1 - x)^5 over the light that is reflected toward w, x = cosine at the microfacet: with f0 and f90 the
+// directional albedo is E mix(f0, f90, this).
+fn ggx_schlick_ratio(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
+    let widths = ggx_toward(w, alpha, 0.0);
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK;
-    let x = ggx_albedo_axis(sqrt(clamp(mu, 0.0, 1.0)), GGX_ALBEDO_MU);
-    return ggx_albedo_plane(first, x, ggx_albedo_axis_alpha(alpha), GGX_ALBEDO_MU);
+    return ggx_albedo_volume(first, sqrt(clamp(w.z, 0.0, 1.0)), widths.x, widths.y);
 }
 
-// Cosine-weighted mean of E times ggx_albedo_schlick_ratio.
-fn ggx_albedo_schlick_mean(alpha: f32, masking: u32) -> f32 {
-    return ggx_albedo_line(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, ggx_albedo_axis_alpha(alpha));
+// Cosine-weighted mean over the hemisphere of E times ggx_schlick_ratio.
+fn ggx_schlick_mean(alpha: vec2f, masking: u32) -> f32 {
+    return ggx_albedo_over_widths(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, alpha);
 }
 
 // Light that leaves after more than one bounce: BRDF without the cosine, reciprocal.

@@ -1,6 +1,6 @@
 //! GGX microfacets: rough metal, and the reflection of rough dielectrics.
 //!
-//! The local frame has z = n; `alpha` holds the widths along x and y, each clamped to [[`ALPHA_MIN`], 1]. Below the
+//! The local frame has z = n; `alpha` holds the widths along x and y, each clamped to the range from [`ALPHA_MIN`] to 1. Below the
 //! floor a surface is a mirror: [`is_mirror`] tells a tracer to treat it as one, everything else stays at the floor.
 //!
 //! - this file: distribution, masking, single-scattering BRDF and its sampling
@@ -18,11 +18,12 @@ mod tests;
 
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-use glam::{Vec2, Vec3, Vec3Swizzles, Vec4};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::Sample;
 use super::fresnel::Fresnel;
 use crate::leaf::Leaf;
+use crate::math::bounded;
 
 pub use conductor::Conductor;
 pub use multiple::multiple;
@@ -60,8 +61,7 @@ impl Masking {
 
 /// `alpha` within its domain; what is not a number becomes the floor.
 pub fn clamp_alpha(alpha: Vec2) -> Vec2 {
-    // f32::max and min pass over a NaN.
-    Vec2::new(alpha.x.max(ALPHA_MIN).min(1.0), alpha.y.max(ALPHA_MIN).min(1.0))
+    Vec2::new(bounded(alpha.x, ALPHA_MIN, 1.0), bounded(alpha.y, ALPHA_MIN, 1.0))
 }
 
 /// True when the surface is smoother than this model draws it.
@@ -121,28 +121,28 @@ pub fn visibility(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> f32 {
     1.0 / inverse.max(1e-12)
 }
 
-/// Half vector in xyz and `D G / (4 cos_o cos_i)` in w, which is 0 where either side is below the horizon.
-pub fn half(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec4 {
+/// The cosine at the microfacet that reflects `wi` to `wo`, and `D G / (4 cos_o cos_i)`, which is 0 where either is below
+/// the horizon.
+pub fn microfacet(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
     match half_vector(wo, wi) {
-        Some(wm) => wm.extend(distribution(wm, alpha) * visibility(wo, wi, alpha, masking)),
-        None => Vec4::new(0.0, 0.0, 1.0, 0.0),
+        Some((wm, cos_theta)) => Vec2::new(cos_theta, distribution(wm, alpha) * visibility(wo, wi, alpha, masking)),
+        None => Vec2::ZERO,
     }
 }
 
-/// `None` where either side is below the horizon or the two are opposite.
-fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
+/// Half vector and its cosine with either direction; `None` where one is below the horizon or the two are opposite.
+fn half_vector(wo: Vec3, wi: Vec3) -> Option<(Vec3, f32)> {
     let h = wo + wi;
     let length2 = h.length_squared();
-    (wo.z > 0.0 && wi.z > 0.0 && length2 >= 1e-24).then(|| h / length2.sqrt())
+    let length = length2.sqrt();
+    // The cosine is half the length of the sum of two unit vectors: the same from both sides to the last bit.
+    (wo.z > 0.0 && wi.z > 0.0 && length2 >= 1e-24).then(|| (h / length, 0.5 * length))
 }
 
 /// Single-scattering BRDF `F D G / (4 cos_o cos_i)`, without the cosine. Cook and Torrance 1982; Walter et al. 2007.
 pub fn eval(wo: Vec3, wi: Vec3, alpha: Vec2, fresnel: &Fresnel, masking: Masking) -> Vec3 {
-    let half = half(wo, wi, alpha, masking);
-    if half.w == 0.0 {
-        return Vec3::ZERO;
-    }
-    half.w * fresnel.eval(wi.dot(half.truncate()))
+    let facet = microfacet(wo, wi, alpha, masking);
+    if facet.y == 0.0 { Vec3::ZERO } else { facet.y * fresnel.eval(facet.x) }
 }
 
 /// A microfacet normal visible from `wo`, which is above the horizon; `u` in `[0, 1)^2`.
@@ -176,7 +176,7 @@ pub fn sample(wo: Vec3, alpha: Vec2, fresnel: &Fresnel, masking: Masking, u: Vec
 
 /// Density per steradian of `wi` in [`sample`]: `pdf_wm / (4 <wo, wm>)`.
 pub fn pdf(wo: Vec3, wi: Vec3, alpha: Vec2) -> f32 {
-    half_vector(wo, wi).map_or(0.0, |wm| 0.5 * distribution(wm, alpha) / (wo.z + stretched(wo, alpha)))
+    half_vector(wo, wi).map_or(0.0, |(wm, _)| 0.5 * distribution(wm, alpha) / (wo.z + stretched(wo, alpha)))
 }
 
 /// `wo` reflected at a visible normal; `None` when it ends below the horizon.

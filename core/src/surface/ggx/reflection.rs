@@ -142,10 +142,10 @@ impl CosineWeights {
     }
 }
 
-/// Mean of `(1 - x)^5` over the light that passes, per [`Masking`].
-pub(super) fn schlick_ratio(mu: f64, alpha: f64) -> [f64; 2] {
+/// Mean of `(1 - x)^5` over the light that passes, per [`Masking`]; arguments as for [`loss`].
+pub(super) fn schlick_ratio(mu: f64, along: f64, across: f64) -> [f64; 2] {
     let mut sums = [(0.0, 0.0); 2];
-    visit(mu, alpha, alpha, &RULE, |r| {
+    visit(mu, along, across, &RULE, |r| {
         let curve = (1.0 - r.cos_half).powi(5);
         for (sum, passes) in sums.iter_mut().zip(r.passes) {
             *sum = (sum.0 + r.share * passes * curve, sum.1 + r.share * passes);

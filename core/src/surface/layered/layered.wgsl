@@ -17,18 +17,17 @@ struct Surface {
 
 // Metal and dielectric below the coat: BRDF without the cosine. They share width and so the microfacet term.
 fn layered_base(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
-    let half_vector = ggx_half(wo, wi, s.alpha, s.masking);
-    let cos_theta = dot(wi, half_vector.xyz);
+    let facet = ggx_microfacet(wo, wi, s.alpha, s.masking);
     var value = vec3f(0.0);
     if s.metallic > 0.0 {
-        var metal = half_vector.w * fresnel_eval(s.fresnel, cos_theta);
+        var metal = facet.y * fresnel_eval(s.fresnel, facet.x);
         if s.multiple_scattering {
             metal += ggx_multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
         }
         value += s.metallic * metal;
     }
     if s.metallic < 1.0 {
-        var dielectric = half_vector.w * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
+        var dielectric = facet.y * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, facet.x);
         dielectric += dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
         value += (1.0 - s.metallic) * dielectric;
     }

@@ -47,18 +47,17 @@ pub struct Surface<'a> {
 
 /// Metal and dielectric below the coat: BRDF without the cosine. They share width and so the microfacet term.
 pub fn base(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
-    let half = ggx::half(wo, wi, s.alpha, s.masking);
-    let cos_theta = wi.dot(half.truncate());
+    let facet = ggx::microfacet(wo, wi, s.alpha, s.masking);
     let mut value = Vec3::ZERO;
     if s.metallic > 0.0 {
-        let mut metal = half.w * s.fresnel.eval(cos_theta);
+        let mut metal = facet.y * s.fresnel.eval(facet.x);
         if s.multiple_scattering {
             metal += ggx::multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
         }
         value += s.metallic * metal;
     }
     if s.metallic < 1.0 {
-        let reflected = half.w * schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
+        let reflected = facet.y * schlick(s.dielectric_f0, s.dielectric_f90, facet.x);
         let base = dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
         value += (1.0 - s.metallic) * (reflected + base);
     }

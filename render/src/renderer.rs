@@ -251,8 +251,7 @@ impl Renderer {
             sampling::hammersley(frame, frames) + Vec2::splat(0.5 / frames as f32) - 0.5
         };
         let clip_from_world = clip_from_world(&view.camera, size, jitter);
-        let (rotation, strength) =
-            self.scene.environment.as_ref().map_or((0.0, 1.0), |e| (e.rotation, e.strength));
+        let (rotation, strength) = self.scene.environment.as_ref().map_or((0.0, 1.0), |e| (e.rotation, e.strength));
         ViewData {
             clip_from_world,
             world_from_clip: clip_from_world.inverse(),

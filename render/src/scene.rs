@@ -18,8 +18,7 @@ use crate::textures::TextureCache;
 pub const VERTEX_STRIDE: u64 = 18 * 4;
 
 /// Attributes of a vertex, in the order of `VertexIn`.
-pub const VERTEX_ATTRIBUTES: [wgpu::VertexAttribute; 6] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x2, 5 => Float32x4];
+pub const VERTEX_ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Float32x2, 5 => Float32x4];
 
 /// One call of the device: a range of indices of one instance.
 #[derive(Clone, Debug)]
@@ -374,7 +373,12 @@ impl GpuScene {
     }
 
     /// Group 0 with the given view.
-    pub(crate) fn group(&self, device: &wgpu::Device, layout: &wgpu::BindGroupLayout, view: &wgpu::Buffer) -> wgpu::BindGroup {
+    pub(crate) fn group(
+        &self,
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        view: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("scene"),
             layout,

@@ -58,15 +58,7 @@ impl Tables {
 impl Metal {
     fn of_base_color(f0: Vec3) -> Metal {
         let fresnel = Fresnel::Rescaled { f0 };
-        Metal {
-            form: form(&fresnel),
-            f0,
-            n: Vec3::ONE,
-            k: Vec3::ZERO,
-            mean: fresnel.mean(),
-            table: 0,
-            albedo_table: 0,
-        }
+        Metal { form: form(&fresnel), f0, n: Vec3::ONE, k: Vec3::ZERO, mean: fresnel.mean(), table: 0, albedo_table: 0 }
     }
 
     fn new(fresnel: &Fresnel, masking: Masking, floats: &mut Vec<f32>) -> Metal {

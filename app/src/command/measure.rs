@@ -143,12 +143,7 @@ fn ball(environment: &Arc<Environment>, roughness: f32) -> Scene {
     Scene {
         name: "ball".into(),
         meshes: vec![shape::sphere(1.0, 256)],
-        instances: vec![Instance {
-            name: "ball".into(),
-            mesh: 0,
-            material: 0,
-            world_from_local: Affine3A::IDENTITY,
-        }],
+        instances: vec![Instance { name: "ball".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY }],
         materials: vec![material],
         environment: Some(environment.clone()),
         ..Scene::default()

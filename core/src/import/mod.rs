@@ -92,13 +92,45 @@ pub fn scene_from_bytes(
             None
         }
     };
-    let mut scene = report.finish(scene)?;
-    scene.0.name = Path::new(file_name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    // The readers check as they go and name the place in the file; this is the net below them.
-    if let Err(faults) = scene.0.validate() {
-        return Err(ImportError::from_scene(file_name, faults));
+    if let Some(scene) = &scene {
+        check_extent(scene, &mut report);
     }
-    Ok(Imported { scene: scene.0, notices: scene.1 })
+    let (mut scene, notices) = report.finish(scene)?;
+    scene.name = Path::new(file_name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    // The readers check as they go and name the place in the file; this is the net below them.
+    scene.validate().map_err(|faults| ImportError::from_scene(file_name, faults))?;
+    Ok(Imported { scene, notices })
+}
+
+/// Squares and cubes of lengths up to this many metres are far from the end of f32.
+const LARGEST: f32 = 1e12;
+
+/// Models below this many metres or above a thousandth of [`LARGEST`] are hardly meant in metres.
+const SMALLEST: f32 = 1e-6;
+
+/// Positions have 24 bits: this far from the origin, in its own sizes, a model has about 1000 steps across left.
+const FAR: f32 = 1e4;
+
+/// Refuses scenes that are empty or too large to compute with; notices those that are oddly large, small or far off.
+fn check_extent(scene: &Scene, report: &mut Report) {
+    if scene.triangle_count() == 0 {
+        let summary = report.summary();
+        let because = if summary.is_empty() { String::new() } else { format!(" ({summary})") };
+        report.fault("scene", Cause::Invalid(format!("there are no triangles to show{because}")));
+        return;
+    }
+    let bounds = scene.bounds();
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let (radius, distance) = (bounds.radius(), bounds.center().length());
+    // Written so that NaN is refused.
+    if !(reach <= LARGEST) {
+        report.fault("scene", Cause::Invalid(format!("reaches {reach} m from the origin; {LARGEST} m is the limit")));
+    } else if radius < SMALLEST || radius > 1e-3 * LARGEST {
+        report.notice("scene", format!("has a radius of {radius} m; is its unit the metre?"));
+    } else if distance > FAR * radius {
+        let step = distance * f32::EPSILON;
+        report.notice("scene", format!("lies {distance} m from the origin, where positions are rounded to {step} m"));
+    }
 }
 
 /// Reads an equirectangular environment (`.hdr`, `.exr`; the content decides) with the default budget.

@@ -8,6 +8,9 @@ use crate::scene;
 /// Faults beyond this many are only counted: a broken file repeats itself.
 const FAULTS_KEPT: usize = 50;
 
+/// Kinds of notice beyond this many are only counted.
+const NOTICES_KEPT: usize = 200;
+
 /// A file was refused; every fault that was found, in the order of the file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", Lines(.faults, *.omitted))]
@@ -160,11 +163,12 @@ pub(super) struct Report {
     faults: Vec<Fault>,
     omitted: usize,
     notices: Vec<Notice>,
+    unlisted: usize,
 }
 
 impl Report {
     pub fn new(file: &str) -> Report {
-        Report { file: file.into(), faults: Vec::new(), omitted: 0, notices: Vec::new() }
+        Report { file: file.into(), faults: Vec::new(), omitted: 0, notices: Vec::new(), unlisted: 0 }
     }
 
     /// Records a fault.
@@ -192,15 +196,27 @@ impl Report {
             return;
         }
         let text = text.into();
-        match self.notices.iter_mut().find(|n| n.text == text) {
-            Some(seen) => seen.count += count,
-            None => self.notices.push(Notice { file: self.file.clone(), element: element.into(), text, count }),
+        if let Some(seen) = self.notices.iter_mut().find(|n| n.text == text) {
+            seen.count += count;
+        } else if self.notices.len() < NOTICES_KEPT {
+            self.notices.push(Notice { file: self.file.clone(), element: element.into(), text, count });
+        } else {
+            self.unlisted += count;
         }
+    }
+
+    /// The first few notices in one line, for a fault that they explain.
+    pub fn summary(&self) -> String {
+        self.notices.iter().take(3).map(|n| n.text.as_str()).collect::<Vec<_>>().join("; ")
     }
 
     /// What was read with its notices, or all faults.
     pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<Notice>), ImportError> {
-        let Report { file, faults, omitted, notices } = self;
+        let Report { file, faults, omitted, mut notices, unlisted } = self;
+        if unlisted > 0 {
+            let text = "more notices are not listed".into();
+            notices.push(Notice { file: file.clone(), element: "file".into(), text, count: unlisted });
+        }
         match value {
             Some(value) if faults.is_empty() => Ok((value, notices)),
             _ if faults.is_empty() => {

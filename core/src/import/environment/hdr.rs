@@ -121,7 +121,9 @@ fn axes(line: &str) -> Option<Axes> {
 fn parse_primaries(value: &str) -> Option<Primaries> {
     let numbers: Vec<f64> = value.split_whitespace().map_while(|w| w.parse().ok()).collect();
     let pair = |i: usize| Some(DVec2::new(*numbers.get(i)?, *numbers.get(i + 1)?));
-    Some(Primaries { red: pair(0)?, green: pair(2)?, blue: pair(4)?, white: pair(6)? })
+    // Some writers state eight zeros for "not known".
+    let stated = numbers.iter().any(|n| *n != 0.0);
+    Some(Primaries { red: pair(0)?, green: pair(2)?, blue: pair(4)?, white: pair(6)? }).filter(|_| stated)
 }
 
 /// Reads one scanline to the end of `out`; returns what follows it.

@@ -33,6 +33,8 @@ pub(super) struct Repairs {
     pub lost_tangents: usize,
     /// Triangles without area.
     pub degenerate: usize,
+    /// Tangents were not taken from texture coordinates, since too many triangles meet at one point.
+    pub crowded: bool,
 }
 
 impl Repairs {
@@ -42,6 +44,8 @@ impl Repairs {
         report.notice_many(at, "normals of length 0 were replaced by those of their triangles", self.zero_normals);
         report.notice_many(at, "tangents of length 0 or along the normal were replaced", self.lost_tangents);
         report.notice_many(at, "triangles have no area", self.degenerate);
+        let crowded = "thousands of triangles meet at one point; tangents do not follow the texture coordinates";
+        report.notice_many(at, crowded, usize::from(self.crowded));
     }
 }
 
@@ -64,9 +68,11 @@ pub(super) fn complete(mesh: &mut Mesh, policy: Normals, tangent_uv: usize) -> R
     } else {
         normals::repair(mesh, &mut repairs);
     }
+    let crowded = mesh.tangents.is_empty() && !mesh.uvs[tangent_uv].is_empty() && tangents::crowded(mesh);
     if !mesh.tangents.is_empty() {
         repairs.lost_tangents = tangents::repair(mesh);
-    } else if mesh.uvs[tangent_uv].is_empty() {
+    } else if mesh.uvs[tangent_uv].is_empty() || crowded {
+        repairs.crowded = crowded;
         mesh.tangents = mesh.normals.iter().map(|n| tangents::around_y(*n)).collect();
     } else {
         tangents::mikktspace(mesh, tangent_uv);

@@ -127,7 +127,7 @@ pub(super) fn repair(mesh: &mut Mesh, repairs: &mut Repairs) {
 }
 
 /// Number of the first vertex at the same place, for each vertex.
-fn weld(positions: &[Vec3]) -> Vec<u32> {
+pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
     let mut seen = HashMap::new();
     let numbers = positions.iter().enumerate().map(|(i, p)| {
         // Adding 0 makes -0 the same as 0.

@@ -6,6 +6,7 @@ use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 
 use super::gather;
+use super::normals::weld;
 use crate::scene::Mesh;
 
 /// A unit tangent that runs around the y axis, as the grooves of a turned part do: smooth everywhere but at the poles,
@@ -42,6 +43,17 @@ fn perpendicular(v: Vec3, normal: Vec3) -> Option<Vec3> {
         // Less than half a degree off the normal the direction is mostly rounding.
         v.normalize().dot(normal).abs() < 0.99996
     })
+}
+
+/// MikkTSpace compares all triangles at a point with each other; beyond this many it would take too long.
+const LARGEST_FAN: u32 = 2048;
+
+/// True when more triangles meet at one point than MikkTSpace takes in good time.
+pub(super) fn crowded(mesh: &Mesh) -> bool {
+    let points = weld(&mesh.positions);
+    let mut counts = vec![0_u32; points.len()];
+    mesh.indices.iter().for_each(|i| counts[points[*i as usize] as usize] += 1);
+    counts.into_iter().any(|count| count > LARGEST_FAN)
 }
 
 /// Tangents by MikkTSpace. Vertices at which triangles disagree (mirrored coordinates) are taken apart.

@@ -2,6 +2,7 @@
 //   classical_radiance(direction, level)     cube of radiance, box-filtered mips
 //   classical_prefiltered(direction, level)  cube of GGX-filtered radiance, one width a level
 //   classical_irradiance(direction)          integral of radiance times cosine
+//   classical_source(index)                  a small bright source: direction; radiance times solid angle
 // and ggx_albedo_entry, through which the tables of mean reflectance are read as well.
 
 // Level of the prefiltered cube for a roughness: fine steps where the lobe changes fast.
@@ -21,14 +22,28 @@ fn classical_texel(direction: vec3f, levels: f32) -> f32 {
     return 4.0 * m * m * m * exp2(-2.0 * (levels - 1.0));
 }
 
-// Level whose texels are as large as the share of one of n samples of that density.
-fn classical_footprint(direction: vec3f, pdf: f32, n: u32, levels: f32) -> f32 {
+// Level whose texels are as large as the share of one of n samples of that density, `blur` levels coarser.
+fn classical_footprint(direction: vec3f, pdf: f32, n: u32, levels: f32, blur: f32) -> f32 {
     let ratio = 1.0 / (f32(n) * max(pdf, 1e-12) * classical_texel(direction, levels));
-    return clamp(0.5 * log2(max(ratio, 1e-12)), 0.0, levels - 1.0);
+    return clamp(0.5 * log2(max(ratio, 1e-12)) + blur, 0.0, levels - 1.0);
 }
 
-// Radiance filtered with the GGX lobe of N = V = R: weight D(h) cos(theta_i).
-fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32) -> vec3f {
+// Neighbouring footprints overlap by this many levels, so that a lamp between two samples is not lost.
+const CLASSICAL_OVERLAP: f32 = 1.0;
+
+// Weight of a direction in the lobe of N = V = R, D(h) cos(theta_i), up to the factor that the sampler's mean cosine
+// brings in: n samples of density D / 4 weigh sum(cos_i), a source of solid angle w weighs n w D cos_i / 4.
+fn classical_source_weight(normal: vec3f, alpha: f32, direction: vec3f) -> f32 {
+    let cos_i = dot(normal, direction);
+    let h = direction - normal;
+    // sin^2 and cos^2 of the half vector's angle.
+    let d = 0.25 * dot(h, h) + alpha * alpha * 0.5 * (1.0 + cos_i);
+    return max(cos_i, 0.0) * 0.25 * INV_PI * alpha * alpha / (d * d);
+}
+
+// Radiance filtered with the GGX lobe of N = V = R: weight D(h) cos(theta_i). `sources` small bright sources are left
+// out of the map and added exactly: classical_source(i) is direction and, in the second row, radiance times solid angle.
+fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32, sources: u32) -> vec3f {
     let frame = frame_new(normal);
     let a2 = alpha * alpha;
     var sum = vec3f(0.0);
@@ -48,23 +63,30 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32) -> vec3f 
         let wi = frame_to_world(frame, vec3f(sin_i * cos(phi), sin_i * sin(phi), cos_i));
         let h = vec3f(sqrt(max(0.0, 1.0 - cos2)), 0.0, cos_h);
         let pdf = 0.25 * ggx_distribution(h, vec2f(alpha));
-        // One level coarser than the share: neighbouring footprints overlap, so that a sun between two is not lost.
-        let level = min(classical_footprint(wi, pdf, n, levels) + 1.0, levels - 1.0);
+        let level = classical_footprint(wi, pdf, n, levels, CLASSICAL_OVERLAP);
         sum += cos_i * classical_radiance(wi, level);
         weight += cos_i;
     }
+    for (var i = 0u; i < sources; i++) {
+        let source = classical_source(i);
+        sum += f32(n) * classical_source_weight(normal, alpha, source[0]) * source[1];
+    }
     return sum / max(weight, 1e-12);
+}
+
+// Isotropic width that stands for both where the direction of the grooves matters little.
+fn classical_width(alpha: vec2f) -> f32 {
+    return sqrt(0.5 * dot(alpha, alpha));
 }
 
 // Directional albedo of single scattering for the surface's metal; table 0 stands for a curve f0 + (1 - f0)(1 - x)^5.
 fn classical_metal_albedo(s: Surface, table: u32, wo: vec3f) -> vec3f {
     let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
-    let width = dielectric_width(s.alpha);
     if table == 0u {
-        return e * mix(s.fresnel.f0, vec3f(1.0), ggx_albedo_schlick_ratio(wo.z, width, s.masking));
+        return e * mix(s.fresnel.f0, vec3f(1.0), ggx_schlick_ratio(wo, s.alpha, s.masking));
     }
     let x = ggx_albedo_axis(sqrt(clamp(wo.z, 0.0, 1.0)), GGX_ALBEDO_MU);
-    let y = ggx_albedo_axis_alpha(width);
+    let y = ggx_albedo_axis_alpha(classical_width(s.alpha));
     let size = GGX_ALBEDO_MU * GGX_ALBEDO_ALPHA;
     let mean = vec3f(
         ggx_albedo_plane(table, x, y, GGX_ALBEDO_MU),
@@ -114,7 +136,7 @@ fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f
     }
     if s.metallic < 1.0 {
         let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
-        let ratio = ggx_albedo_schlick_ratio(wo.z, dielectric_width(s.alpha), s.masking);
+        let ratio = ggx_schlick_ratio(wo, s.alpha, s.masking);
         albedo += (1.0 - s.metallic) * e * mix(s.dielectric_f0, vec3f(s.dielectric_f90), ratio);
     }
     return albedo * classical_prefiltered(direction, classical_level(roughness, levels));
@@ -134,7 +156,7 @@ fn classical_sampled(s: Surface, base: Frame, wo: vec3f, n: u32, rotation: vec2f
         let pdf = ggx_pdf(wo, wi, s.alpha);
         let weight = ggx_shadowing_masking(wo, wi, s.alpha, s.masking) / max(g1, 1e-12);
         let direction = frame_to_world(base, wi);
-        let level = classical_footprint(direction, pdf, n, levels);
+        let level = classical_footprint(direction, pdf, n, levels, 0.0);
         sum += weight * classical_fresnel(s, dot(wi, wm)) * classical_radiance(direction, level);
     }
     return sum / f32(n);
@@ -147,7 +169,7 @@ fn classical_environment(
     samples: u32, rotation: vec2f, levels: vec2f,
 ) -> vec3f {
     let wo = classical_facing(frame_to_local(base, to_viewer));
-    let width = dielectric_width(s.alpha);
+    let width = classical_width(s.alpha);
     let irradiance = occlusion * classical_irradiance(base.n) * INV_PI;
 
     var reflected: vec3f;

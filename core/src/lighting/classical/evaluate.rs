@@ -3,11 +3,12 @@
 use glam::{Vec2, Vec3};
 
 use super::level;
+use super::sources::Source;
 use crate::math::frame::Frame;
 use crate::math::sampling;
 use crate::surface::fresnel;
 use crate::surface::ggx;
-use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, albedo_schlick_ratio, loss, loss_mean};
+use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, loss, loss_mean, schlick_ratio};
 use crate::surface::layered::Surface;
 use crate::surface::{coat, dielectric};
 
@@ -34,10 +35,11 @@ pub struct Lobes {
     pub rotation: Vec2,
 }
 
-/// Level whose texels are as large as the share of one of `n` samples of that density (per steradian).
-pub fn footprint(direction: Vec3, pdf: f32, n: u32, levels: f32) -> f32 {
+/// Level whose texels are as large as the share of one of `n` samples of that density (per steradian), `blur` levels
+/// coarser.
+pub fn footprint(direction: Vec3, pdf: f32, n: u32, levels: f32, blur: f32) -> f32 {
     let ratio = 1.0 / (n as f32 * pdf.max(1e-12) * texel(direction, levels));
-    (0.5 * ratio.max(1e-12).log2()).clamp(0.0, levels - 1.0)
+    (0.5 * ratio.max(1e-12).log2() + blur).clamp(0.0, levels - 1.0)
 }
 
 /// Solid angle of a texel of the finest level.
@@ -46,10 +48,23 @@ fn texel(direction: Vec3, levels: f32) -> f32 {
     4.0 * m * m * m * (-2.0 * (levels - 1.0)).exp2()
 }
 
-/// Radiance filtered with the GGX lobe of N = V = R by `n` samples: weight D(h) cos(theta_i).
+/// Neighbouring footprints overlap by this many levels, so that a lamp between two samples is not lost.
+pub const OVERLAP: f32 = 1.0;
+
+/// Weight of a direction in the lobe of N = V = R, D(h) cos(theta_i), up to the factor that the sampler's mean cosine
+/// brings in: n samples of density D / 4 weigh sum(cos_i), a source of solid angle w weighs n w D cos_i / 4.
+fn source_weight(normal: Vec3, alpha: f32, direction: Vec3) -> f32 {
+    let cos_i = normal.dot(direction);
+    // sin^2 and cos^2 of the half vector's angle.
+    let d = 0.25 * (direction - normal).length_squared() + alpha * alpha * 0.5 * (1.0 + cos_i);
+    cos_i.max(0.0) * 0.25 * std::f32::consts::FRAC_1_PI * alpha * alpha / (d * d)
+}
+
+/// Radiance filtered with the GGX lobe of N = V = R by `n` samples: weight D(h) cos(theta_i). `sources` are left out of
+/// the map and added exactly.
 ///
 /// Karis 2013, Real Shading in Unreal Engine 4, with the footprint of Krivanek and Colbert 2008.
-pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32) -> Vec3 {
+pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[Source]) -> Vec3 {
     let frame = Frame::new(normal);
     let levels = maps.radiance_levels();
     let a2 = alpha * alpha;
@@ -69,10 +84,12 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32) -> Vec3 {
         let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
         let h = Vec3::new(sin_h, 0.0, cos2.sqrt());
         let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
-        // One level coarser than the share: neighbouring footprints overlap, so that a sun between two is not lost.
-        let level = (footprint(wi, pdf, n, levels) + 1.0).min(levels - 1.0);
+        let level = footprint(wi, pdf, n, levels, OVERLAP);
         sum += cos_i * maps.radiance(wi, level);
         weight += cos_i;
+    }
+    for source in sources {
+        sum += n as f32 * source_weight(normal, alpha, source.direction) * source.power;
     }
     sum / weight.max(1e-12)
 }
@@ -93,7 +110,7 @@ pub fn environment(
     lobes: Lobes,
 ) -> Vec3 {
     let wo = facing(base.to_local(to_viewer));
-    let width = dielectric::width(s.alpha);
+    let width = width(s.alpha);
     let irradiance = occlusion * maps.irradiance(base.n) * std::f32::consts::FRAC_1_PI;
     let reflected = match lobes.samples {
         0 => split_sum(maps, s, table, base, wo),
@@ -138,9 +155,9 @@ fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame,
     let n = bent_normal(base, wo_world, s.alpha);
     let direction = 2.0 * n.dot(wo_world) * n - wo_world;
     let roughness = (s.alpha.x * s.alpha.y).sqrt().sqrt();
-    let width = dielectric::width(s.alpha);
+    let width = width(s.alpha);
     let e = 1.0 - loss(wo, s.alpha, s.masking);
-    let ratio = albedo_schlick_ratio(wo.z, width, s.masking);
+    let ratio = schlick_ratio(wo, s.alpha, s.masking);
     let schlick = s.dielectric_f0.lerp(Vec3::splat(s.dielectric_f90), ratio);
     let metal = match table {
         None => s.fresnel.f0().lerp(Vec3::ONE, ratio),
@@ -148,6 +165,11 @@ fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame,
     };
     let albedo = e * schlick.lerp(metal, s.metallic);
     albedo * maps.prefiltered(direction, level(roughness, maps.prefiltered_levels()))
+}
+
+/// Isotropic width that stands for both where the direction of the grooves matters little.
+fn width(alpha: Vec2) -> f32 {
+    (0.5 * alpha.length_squared()).sqrt()
 }
 
 /// Looks up the three grids of [`super::mean_fresnel_table`].
@@ -178,7 +200,7 @@ fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) 
         let pdf = ggx::pdf(wo, wi, s.alpha);
         let weight = ggx::shadowing_masking(wo, wi, s.alpha, s.masking) / g1;
         let direction = base.to_world(wi);
-        let level = footprint(direction, pdf, lobes.samples, maps.radiance_levels());
+        let level = footprint(direction, pdf, lobes.samples, maps.radiance_levels(), 0.0);
         sum += weight * shared_fresnel(s, wi.dot(wm)) * maps.radiance(direction, level);
     }
     sum / lobes.samples as f32

@@ -102,7 +102,7 @@ impl<'a> Texels<'a> {
         for texel in &self.list {
             let cos_i = texel.direction.dot(frame.n);
             if cos_i > 0.0 {
-                let value = ggx::half(wo, frame.to_local(texel.direction), alpha, masking).w;
+                let value = ggx::microfacet(wo, frame.to_local(texel.direction), alpha, masking).y;
                 sum += f64::from(value * cos_i * texel.solid_angle) * texel.radiance.as_dvec3();
             }
         }

@@ -5,6 +5,7 @@
 
 mod evaluate;
 pub mod exact;
+mod sources;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +19,8 @@ use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
 use crate::surface::ggx::reflection::{CosineWeights, sample_curve};
 use crate::surface::layered;
 
-pub use evaluate::{Lobes, Maps, environment, footprint, prefilter};
+pub use evaluate::{Lobes, Maps, OVERLAP, environment, footprint, prefilter};
+pub use sources::{SOURCES_MAX, Source, Split, split};
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
@@ -29,6 +31,7 @@ pub static WGSL: Leaf = Leaf {
 fn classical_radiance(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
 fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
 fn classical_irradiance(direction: vec3f) -> vec3f { return vec3f(PI); }
+fn classical_source(index: u32) -> mat2x3f { return mat2x3f(vec3f(0.0, 1.0, 0.0), vec3f(1.0)); }
 ",
 };
 

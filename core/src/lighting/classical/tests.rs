@@ -5,31 +5,10 @@ use glam::{Vec2, Vec3};
 use super::*;
 use crate::math::frame::Frame;
 use crate::scene::Environment;
-use crate::surface::ggx::albedo::albedo_schlick_ratio;
+use crate::surface::ggx::albedo::schlick_ratio;
 use crate::surface::layered::Surface;
 
-/// A constant environment.
-struct White;
-
 const WHITE_METAL: Fresnel = Fresnel::Rescaled { f0: Vec3::ONE };
-
-impl Maps for White {
-    fn radiance(&self, _: Vec3, _: f32) -> Vec3 {
-        Vec3::ONE
-    }
-    fn prefiltered(&self, _: Vec3, _: f32) -> Vec3 {
-        Vec3::ONE
-    }
-    fn irradiance(&self, _: Vec3) -> Vec3 {
-        Vec3::splat(std::f32::consts::PI)
-    }
-    fn radiance_levels(&self) -> f32 {
-        9.0
-    }
-    fn prefiltered_levels(&self) -> f32 {
-        6.0
-    }
-}
 
 fn metal(fresnel: &Fresnel, alpha: Vec2) -> Surface<'_> {
     Surface {
@@ -51,7 +30,7 @@ fn shade(s: &Surface, cos: f32, samples: u32) -> Vec3 {
     let frame = Frame::new(Vec3::Y);
     let to_viewer = frame.to_world(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos));
     let lobes = Lobes { samples, rotation: Vec2::new(0.3, 0.7) };
-    environment(&White, s, None, &frame, &frame, to_viewer, 1.0, lobes)
+    environment(&Constant(1.0), s, None, &frame, &frame, to_viewer, 1.0, lobes)
 }
 
 /// Table error of the albedo (1e-3) and, when sampled, what 256 points leave of the integral.
@@ -100,7 +79,10 @@ fn the_table_of_a_rescaled_curve_equals_its_closed_form() {
             let x = i as f32 / (width - 1) as f32;
             let y = j as f32 / (height - 1) as f32;
             let alpha = (ALBEDO_ROOT_MIN + y * (1.0 - ALBEDO_ROOT_MIN)).powi(4);
-            let expected = f0.lerp(Vec3::ONE, albedo_schlick_ratio(x * x, alpha, Masking::Correlated));
+            let expected = f0.lerp(
+                Vec3::ONE,
+                schlick_ratio(Vec3::new((1.0 - x.powi(4)).sqrt(), 0.0, x * x), Vec2::splat(alpha), Masking::Correlated),
+            );
             let at = |c: usize| table[(c * height + j) * width + i];
             let got = Vec3::new(at(0), at(1), at(2));
             assert!((got - expected).abs().max_element() < 2e-3, "{got} for {expected} at {i}, {j}");
@@ -120,7 +102,28 @@ fn tilted() -> Environment {
     map
 }
 
-/// The same as formula.
+/// The same radiance from everywhere.
+struct Constant(f32);
+
+impl Maps for Constant {
+    fn radiance(&self, _: Vec3, _: f32) -> Vec3 {
+        Vec3::splat(self.0)
+    }
+    fn prefiltered(&self, _: Vec3, _: f32) -> Vec3 {
+        Vec3::splat(self.0)
+    }
+    fn irradiance(&self, _: Vec3) -> Vec3 {
+        Vec3::splat(self.0 * std::f32::consts::PI)
+    }
+    fn radiance_levels(&self) -> f32 {
+        9.0
+    }
+    fn prefiltered_levels(&self) -> f32 {
+        6.0
+    }
+}
+
+/// `1 + d.x` as formula.
 struct Tilted;
 
 impl Maps for Tilted {
@@ -148,10 +151,28 @@ fn prefiltering_agrees_with_the_exact_integral() {
     for alpha in [0.05, 0.2, 0.6, 1.0] {
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::new(0.6, 0.8, 0.0)] {
             let exact = texels.prefiltered(normal, alpha).x;
-            let got = f64::from(prefilter(&Tilted, normal, alpha, 2048).x);
+            let got = f64::from(prefilter(&Tilted, normal, alpha, 2048, &[]).x);
             // The map of 256 texels interpolates a sine: 1e-4; 2048 points of the lobe: 1e-3.
             assert!((got - exact).abs() < 3e-3, "{got} for {exact} at alpha {alpha}, {normal}");
         }
+    }
+}
+
+#[test]
+fn a_source_split_off_filters_like_the_map_it_came_from() {
+    let mut map = Environment::new("sun", 256, 128, vec![Vec3::splat(0.25); 256 * 128]);
+    let sun = 40 * 256 + 70;
+    map.texels[sun] = Vec3::new(5000.0, 4000.0, 3000.0);
+    let split = split(&map);
+    assert_eq!((split.cap, split.sources.len()), (0.25, 1));
+    let texels = exact::Texels::new(&map);
+    let toward = map.texel_direction(70, 40, Vec2::splat(0.5));
+    for alpha in [0.2, 0.5, 1.0] {
+        let normal = (toward + Vec3::new(0.2, 0.1, 0.0)).normalize();
+        let exact = texels.prefiltered(normal, alpha);
+        let got = prefilter(&Constant(0.25), normal, alpha, 512, &split.sources).as_dvec3();
+        // The sun is a point here and a texel of 0.025 rad there: 2nd order in its size over the lobe's width.
+        assert!(((got - exact).abs() / exact).max_element() < 0.01, "{got} for {exact} at alpha {alpha}");
     }
 }
 

@@ -57,10 +57,8 @@ pub fn light_group(
         shadows.clip_from_world.as_entire_binding(),
         tables.as_entire_binding(),
     ];
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("light"), layout, entries: &entries })
 }
 
@@ -86,8 +84,7 @@ impl ClassicalPass {
             entries: &[words(0), words(1), words(2), words(3), texture_entry(4, wgpu::TextureSampleType::Depth, flat)],
         });
         let layouts = [Some(scene_layout), Some(&layout), Some(light_layout)];
-        let pipeline =
-            fullscreen_pipeline(device, "classical", &layouts, &shader::CLASSICAL.module(device), format);
+        let pipeline = fullscreen_pipeline(device, "classical", &layouts, &shader::CLASSICAL.module(device), format);
         ClassicalPass { layout, pipeline }
     }
 

@@ -8,6 +8,20 @@ struct Params {
     samples: u32,
     // Factor that brings the source into the range of half floats.
     scale: f32,
+    // Channels of the source are clamped to this.
+    cap: f32,
+    // Sources that the clamp left out.
+    sources: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+struct Source {
+    direction: vec3f,
+    pad0: f32,
+    // Radiance times solid angle, in the scale of the cubes.
+    power: vec3f,
+    pad1: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -16,6 +30,12 @@ struct Params {
 @group(0) @binding(3) var radiance_cube: texture_cube<f32>;
 @group(0) @binding(4) var cube_sampler: sampler;
 @group(0) @binding(5) var target_level: texture_storage_2d_array<rgba16float, write>;
+
+@group(0) @binding(6) var<storage, read> sources: array<Source>;
+
+fn classical_source(index: u32) -> mat2x3f {
+    return mat2x3f(sources[index].direction, sources[index].power);
+}
 
 // Cube maps are left-handed: the environment's z is mirrored.
 fn environment_from_cube(d: vec3f) -> vec3f {
@@ -81,7 +101,7 @@ fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < n * n; i++) {
         let offset = (vec2f(f32(i % n), f32(i / n)) + 0.5) / f32(n);
         let direction = face_direction(id.z, (vec2f(id.xy) + offset) / vec2f(size) * 2.0 - 1.0);
-        sum += equirectangular_radiance(environment_from_cube(direction));
+        sum += min(equirectangular_radiance(environment_from_cube(direction)), vec3f(params.cap));
     }
     store(id, sum / f32(n * n) * params.scale);
 }
@@ -116,7 +136,7 @@ fn prefilter(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let direction = environment_from_cube(face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0));
-    store(id, classical_prefilter(direction, params.alpha, params.samples, params.levels));
+    store(id, classical_prefilter(direction, params.alpha, params.samples, params.levels, params.sources));
 }
 
 // Level 0 of the prefiltered cube is the mirror: a copy.

@@ -5,6 +5,7 @@
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
@@ -43,6 +44,19 @@ struct Params {
     alpha: f32,
     samples: u32,
     scale: f32,
+    cap: f32,
+    sources: u32,
+    pad: [u32; 2],
+}
+
+/// A small bright source, in the scale of the cubes.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SourceData {
+    direction: Vec3,
+    pad0: f32,
+    power: Vec3,
+    pad1: f32,
 }
 
 /// Pipelines that build [`EnvironmentMaps`].
@@ -105,16 +119,28 @@ impl EnvironmentPass {
             irradiance: cube(gpu, "irradiance", IRRADIANCE_FACE, 1),
             scale,
         };
-        let steps = Steps { pass: self, gpu, source: &source, blank: &cube(gpu, "blank", 1, 1), levels, scale };
-        steps.run(&self.from_equirectangular, Input::Map, (&maps.radiance, 0), Lobe::NONE);
-        for level in 1..levels {
-            steps.run(&self.downsample, Input::Level(&maps.radiance, level - 1), (&maps.radiance, level), Lobe::NONE);
-        }
+        let split = classical::split(environment);
+        let steps = Steps {
+            pass: self,
+            gpu,
+            source: &source,
+            blank: &cube(gpu, "blank", 1, 1),
+            bright: &source_buffer(gpu, &split, scale),
+            source_count: split.sources.len() as u32,
+            levels,
+            scale,
+        };
+        steps.run(&self.from_equirectangular, Input::Map { cap: f32::MAX }, (&maps.radiance, 0), Lobe::NONE);
+        steps.downsample(&maps.radiance);
         steps.run(&self.copy, Input::Level(&maps.radiance, 0), (&maps.prefiltered, 0), Lobe::NONE);
+        // Lobes are filtered from what is left without the brightest texels, which are added one by one.
+        let dimmed = cube(gpu, "dimmed radiance", face, levels);
+        steps.run(&self.from_equirectangular, Input::Map { cap: split.cap }, (&dimmed, 0), Lobe::NONE);
+        steps.downsample(&dimmed);
         for level in 1..prefiltered_levels {
             let roughness = classical::roughness(level as f32, prefiltered_levels as f32);
             let lobe = Lobe { alpha: roughness * roughness, samples: classical::prefilter_samples(level) };
-            steps.run(&self.prefilter, Input::Cube(&maps.radiance), (&maps.prefiltered, level), lobe);
+            steps.run(&self.prefilter, Input::Cube(&dimmed), (&maps.prefiltered, level), lobe);
         }
         let coarse = levels - 1 - IRRADIANCE_SOURCE.min(face).ilog2();
         steps.run(&self.irradiance, Input::Level(&maps.radiance, coarse), (&maps.irradiance, 0), Lobe::NONE);
@@ -143,8 +169,8 @@ pub fn cube_view(texture: &wgpu::Texture) -> wgpu::TextureView {
 
 /// What a step reads.
 enum Input<'a> {
-    /// The equirectangular map.
-    Map,
+    /// The equirectangular map, clamped.
+    Map { cap: f32 },
     /// One level of a cube, texel by texel.
     Level(&'a wgpu::Texture, u32),
     /// A whole cube, filtered.
@@ -168,15 +194,32 @@ struct Steps<'a> {
     source: &'a wgpu::TextureView,
     /// Stands in for what a step does not read; a texture must not be read and written at once.
     blank: &'a wgpu::Texture,
+    bright: &'a wgpu::Buffer,
+    source_count: u32,
     levels: u32,
     scale: f32,
 }
 
 impl Steps<'_> {
+    /// Fills the levels of a cube of radiance below the first.
+    fn downsample(&self, cube: &wgpu::Texture) {
+        for level in 1..cube.mip_level_count() {
+            self.run(&self.pass.downsample, Input::Level(cube, level - 1), (cube, level), Lobe::NONE);
+        }
+    }
+
     fn run(&self, pipeline: &wgpu::ComputePipeline, input: Input, target: (&wgpu::Texture, u32), lobe: Lobe) {
         let device = &self.gpu.device;
-        let params =
-            Params { levels: self.levels as f32, alpha: lobe.alpha, samples: lobe.samples, scale: 1.0 / self.scale };
+        let cap = if let Input::Map { cap } = input { cap.min(f32::MAX) } else { 0.0 };
+        let params = Params {
+            levels: self.levels as f32,
+            alpha: lobe.alpha,
+            samples: lobe.samples,
+            scale: 1.0 / self.scale,
+            cap,
+            sources: self.source_count,
+            pad: [0; 2],
+        };
         let params = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("environment step"),
             contents: bytemuck::bytes_of(&params),
@@ -201,6 +244,7 @@ impl Steps<'_> {
                 wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&cube) },
                 wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.pass.sampler) },
                 wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(&target_view) },
+                wgpu::BindGroupEntry { binding: 6, resource: self.bright.as_entire_binding() },
             ],
         });
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -240,6 +284,21 @@ fn cube(gpu: &Gpu, label: &str, face: u32, levels: u32) -> wgpu::Texture {
     })
 }
 
+/// The sources for the shader; never empty.
+fn source_buffer(gpu: &Gpu, split: &classical::Split, scale: f32) -> wgpu::Buffer {
+    let mut data: Vec<SourceData> = split
+        .sources
+        .iter()
+        .map(|s| SourceData { direction: s.direction, pad0: 0.0, power: s.power / scale, pad1: 0.0 })
+        .collect();
+    data.resize(data.len().max(1), SourceData::zeroed());
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("bright sources"),
+        contents: bytemuck::cast_slice(&data),
+        usage: wgpu::BufferUsages::STORAGE,
+    })
+}
+
 /// The map as floats; it is dropped once the cubes are built.
 fn upload(gpu: &Gpu, environment: &Environment) -> Result<wgpu::TextureView, RenderError> {
     let allowed = gpu.device.limits().max_texture_dimension_2d;
@@ -269,7 +328,7 @@ fn upload(gpu: &Gpu, environment: &Environment) -> Result<wgpu::TextureView, Ren
     Ok(texture.create_view(&Default::default()))
 }
 
-fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 6] {
+fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 7] {
     let texture = |dimension, filterable| wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable },
         view_dimension: dimension,
@@ -290,11 +349,15 @@ fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 6] {
             format: FORMAT,
             view_dimension: wgpu::TextureViewDimension::D2Array,
         },
+        wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
     ];
     let mut binding = 0;
     kinds.map(|ty| {
-        let entry =
-            wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
+        let entry = wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };
         binding += 1;
         entry
     })

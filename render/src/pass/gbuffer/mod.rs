@@ -78,7 +78,9 @@ impl GBufferPass {
                     module: &module,
                     entry_point: Some("fragment"),
                     compilation_options: Default::default(),
-                    targets: &[const { Some(wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL }) }; 4],
+                    targets: &[const {
+                        Some(wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL })
+                    }; 4],
                 }),
                 multiview_mask: None,
                 cache: None,

@@ -1,0 +1,132 @@
+//! Foreign models and environments: every one loads, or is refused for the reason that it should be.
+//!
+//! The data are not part of the repository. They are looked for as `shared/data` beside it; without them the tests are
+//! ignored, and fail when `BURNISH_REQUIRE` names `data`.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use burnish_core::import::{ImportOptions, load_environment, load_scene};
+use libtest_mimic::{Arguments, Failed, Trial};
+
+/// Radiance HDR keeps 8 bits of mantissa and readers differ in half a step of it.
+const MAX_TOLERANCE: f32 = 0.01;
+
+/// Models that must be refused, and the word that the message must hold.
+const REFUSED: &[(&str, &str)] = &[("gltf/Box_Draco.glb", "KHR_draco_mesh_compression")];
+
+fn main() {
+    let mut arguments = Arguments::from_args();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let data = root.ancestors().map(|folder| folder.join("shared/data")).find(|folder| folder.is_dir());
+    let trials = match data {
+        Some(data) => trials(&data),
+        None => {
+            let required = std::env::var("BURNISH_REQUIRE").is_ok_and(|list| list.split(',').any(|w| w == "data"));
+            let trial = Trial::test("ignored: no trial data", || Err("BURNISH_REQUIRE asks for trial data".into()));
+            vec![trial.with_ignored_flag(!required)]
+        }
+    };
+    // Decoding is parallel within each trial.
+    arguments.test_threads.get_or_insert(1);
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+fn trials(data: &Path) -> Vec<Trial> {
+    let models = data.join("models");
+    let counts = table(&models.join("README.md"), 2);
+    let maxima = table(&data.join("hdri/README.md"), 5);
+    let mut trials = Vec::new();
+    for path in files(&models, &["gltf", "glb", "obj"]) {
+        let key = key(&path, &models);
+        let triangles = counts.get(&key).cloned();
+        trials.push(Trial::test(format!("model {key}"), move || model(&path, &key, triangles.as_deref())));
+    }
+    for path in files(&data.join("hdri"), &["hdr", "exr"]) {
+        let key = key(&path, &data.join("hdri"));
+        let max = maxima.get(&key).cloned();
+        trials.push(Trial::test(format!("environment {key}"), move || environment(&path, max.as_deref())));
+    }
+    let found = trials.len();
+    let listed = counts.len() + maxima.len();
+    trials.push(Trial::test("every file of the tables is there", move || {
+        if listed > 0 && found >= listed { Ok(()) } else { Err(format!("{found} files, {listed} listed").into()) }
+    }));
+    trials
+}
+
+fn model(path: &Path, key: &str, triangles: Option<&str>) -> Result<(), Failed> {
+    let result = load_scene(path, &ImportOptions::default());
+    if let Some((_, word)) = REFUSED.iter().find(|(name, _)| *name == key) {
+        return match result {
+            Err(error) if error.to_string().contains(word) => Ok(()),
+            Err(error) => Err(format!("refused for another reason: {error}").into()),
+            Ok(_) => Err(format!("was read, but {word} is not supported").into()),
+        };
+    }
+    let imported = result?;
+    for notice in &imported.notices {
+        println!("{notice}");
+    }
+    let scene = &imported.scene;
+    scene.validate().map_err(|faults| format!("{faults:?}"))?;
+    let found: usize = scene.meshes.iter().map(|m| m.indices.len() / 3).sum();
+    match triangles {
+        // Files without a row in the table have no count to hold them to.
+        Some(stated) if stated != found.to_string() => Err(format!("{found} triangles, {stated} expected").into()),
+        _ if scene.bounds().radius() > 0.0 => Ok(()),
+        _ => Err("the model has no extent".into()),
+    }
+}
+
+fn environment(path: &Path, max: Option<&str>) -> Result<(), Failed> {
+    let (environment, notices) = load_environment(path)?;
+    for notice in &notices {
+        println!("{notice}");
+    }
+    let found = environment.texels.iter().map(|t| t.max_element()).fold(0.0, f32::max);
+    if environment.width != 2 * environment.height {
+        return Err(format!("{}x{}", environment.width, environment.height).into());
+    }
+    let max: f32 = max.ok_or("not in the table")?.parse()?;
+    if (found - max).abs() <= MAX_TOLERANCE * max {
+        return Ok(());
+    }
+    Err(format!("maximum {found}, expected {max}").into())
+}
+
+/// Files with one of the endings, in all subfolders, sorted.
+fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_string();
+            match path.is_dir() {
+                true => folders.push(path),
+                false if endings.contains(&ending.as_str()) => found.push(path),
+                false => {}
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The name by which the tables call a file.
+fn key(path: &Path, root: &Path) -> String {
+    path.strip_prefix(root).unwrap_or(path).to_string_lossy().replace('\\', "/")
+}
+
+/// First column of a Markdown table to the given one, of the rows about files.
+fn table(readme: &Path, column: usize) -> HashMap<String, String> {
+    let text = std::fs::read_to_string(readme).unwrap_or_default();
+    let rows = text.lines().filter_map(|line| {
+        let cells: Vec<&str> = line.trim().trim_matches('|').split('|').map(str::trim).collect();
+        let name = Path::new(cells.first()?);
+        let is_file = ["gltf", "glb", "obj", "hdr", "exr"].contains(&name.extension()?.to_str()?);
+        Some((cells[0].to_string(), cells.get(column).filter(|_| is_file)?.to_string()))
+    });
+    rows.collect()
+}

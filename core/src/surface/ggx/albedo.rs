@@ -191,9 +191,9 @@ fn node_alpha(node: u32) -> f64 {
 ///
 /// Slopes have the covariance `diag(at^2, ab^2)`. Along the azimuth phi of `w` their width is `p`; across it `q`, which
 /// shrinks to `at ab / p` once the slope along is known. The loss lies between: `p^2 = mix(ab^2, at^2, cos^2 phi)` and
-/// `q^2 = mix(mix(at^2, ab^2, cos^2 phi), (at ab / p)^2, narrowing)`, fitted for each table. Toward the normal phi turns to the
-/// wider axis, so that nothing jumps where it is undefined. Exact for equal widths, at the normal and along the wider
-/// axis.
+/// `q^2 = mix(mix(at^2, ab^2, cos^2 phi), (at ab / p)^2, narrowing)`, fitted for each table. Toward the normal phi
+/// turns to the wider axis, so that nothing jumps where it is undefined. Exact for equal widths, at the normal and
+/// along the wider axis.
 pub fn toward(w: Vec3, alpha: Vec2, narrowing: f32) -> Vec2 {
     let a = clamp_alpha(alpha);
     let a2 = a * a;
@@ -231,8 +231,8 @@ pub fn albedo_mean(alpha: f32, masking: Masking) -> f32 {
     1.0 - loss_mean(Vec2::splat(alpha), masking)
 }
 
-/// Mean of `(1 - x)^5` over the light that is reflected toward `w`, x = cosine at the microfacet: the directional albedo
-/// for the curve `f0 + (f90 - f0)(1 - x)^5` is `E mix(f0, f90, this)`.
+/// Mean of `(1 - x)^5` over the light that is reflected toward `w`, x = cosine at the microfacet: the directional
+/// albedo for the curve `f0 + (f90 - f0)(1 - x)^5` is `E mix(f0, f90, this)`.
 pub fn schlick_ratio(w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
     TABLE.schlick_ratio(w, alpha, masking)
 }

@@ -3,8 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::albedo::{loss, loss_mean};
-use super::multiple::bounces;
-use super::{Masking, eval, multiple, pdf, sample_wi, usable};
+use super::{Masking, bounces, eval, multiple, pdf, sample_wi, usable};
 use crate::math::sampling;
 use crate::surface::fresnel::Fresnel;
 use crate::surface::{Sample, lambert};

@@ -230,6 +230,12 @@ fn ggx_schlick_mean(alpha: vec2f, masking: u32) -> f32 {
     return ggx_albedo_over_widths(masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK_MEAN, alpha);
 }
 
+// What all bounces after the first keep of white light. A surface under even light returns this times its loss.
+fn ggx_bounces(fresnel_mean: vec3f, loss_mean: f32) -> vec3f {
+    let f = clamp(fresnel_mean, vec3f(0.0), vec3f(1.0));
+    return f * f * (1.0 - loss_mean) / (1.0 - f * loss_mean);
+}
+
 // Light that leaves after more than one bounce: BRDF without the cosine, reciprocal.
 fn ggx_multiple(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel_mean: vec3f, masking: u32) -> vec3f {
     if wo.z <= 0.0 || wi.z <= 0.0 {
@@ -237,7 +243,5 @@ fn ggx_multiple(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel_mean: vec3f, masking
     }
     let mean = ggx_loss_mean(alpha, masking);
     let lost = ggx_loss(wo, alpha, masking) * ggx_loss(wi, alpha, masking);
-    let f = clamp(fresnel_mean, vec3f(0.0), vec3f(1.0));
-    let bounces = f * f * (1.0 - mean) / (1.0 - f * mean);
-    return bounces * (lost * INV_PI / mean);
+    return ggx_bounces(fresnel_mean, mean) * (lost * INV_PI / mean);
 }

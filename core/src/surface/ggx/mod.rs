@@ -1,7 +1,8 @@
 //! GGX microfacets: rough metal, and the reflection of rough dielectrics.
 //!
-//! The local frame has z = n; `alpha` holds the widths along x and y, each clamped to the range from [`ALPHA_MIN`] to 1. Below the
-//! floor a surface is a mirror: [`is_mirror`] tells a tracer to treat it as one, everything else stays at the floor.
+//! The local frame has z = n; `alpha` holds the widths along x and y, each clamped to the range from [`ALPHA_MIN`] to
+//! 1. Below the floor a surface is a mirror: [`is_mirror`] tells a tracer to treat it as one, everything else stays at
+//! the floor.
 //!
 //! - this file: distribution, masking, single-scattering BRDF and its sampling
 //! - [`albedo`]: what single scattering reflects in total, tabulated
@@ -26,7 +27,7 @@ use crate::leaf::Leaf;
 use crate::math::bounded;
 
 pub use conductor::Conductor;
-pub use multiple::multiple;
+pub use multiple::{bounces, multiple};
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
@@ -121,8 +122,8 @@ pub fn visibility(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> f32 {
     1.0 / inverse.max(1e-12)
 }
 
-/// The cosine at the microfacet that reflects `wi` to `wo`, and `D G / (4 cos_o cos_i)`, which is 0 where either is below
-/// the horizon.
+/// The cosine at the microfacet that reflects `wi` to `wo`, and `D G / (4 cos_o cos_i)`, which is 0 where either is
+/// below the horizon.
 pub fn microfacet(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
     match half_vector(wo, wi) {
         Some((wm, cos_theta)) => Vec2::new(cos_theta, distribution(wm, alpha) * visibility(wo, wi, alpha, masking)),

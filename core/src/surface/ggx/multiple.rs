@@ -21,8 +21,9 @@ pub fn multiple(wo: Vec3, wi: Vec3, alpha: Vec2, fresnel_mean: Vec3, masking: Ma
     bounces(fresnel_mean, mean) * (lost * FRAC_1_PI / mean)
 }
 
-/// Colour of all bounces after the first, `F_ms`, for the mean loss of the surface.
-pub(super) fn bounces(fresnel_mean: Vec3, mean: f32) -> Vec3 {
+/// What all bounces after the first keep of white light, `F_ms`; `loss_mean` is that of the surface,
+/// [`loss_mean`](fn@super::albedo::loss_mean). A surface under even light returns `F_ms (1 - E(wo))` of it this way.
+pub fn bounces(fresnel_mean: Vec3, loss_mean: f32) -> Vec3 {
     let f = fresnel_mean.clamp(Vec3::ZERO, Vec3::ONE);
-    f * f * (1.0 - mean) / (Vec3::ONE - f * mean)
+    f * f * (1.0 - loss_mean) / (Vec3::ONE - f * loss_mean)
 }

@@ -43,8 +43,8 @@ impl Rule {
 /// What all tables are made with: 2e-3 of the loss at worst, where light at the horizon puts a kink into the integrand.
 static RULE: LazyLock<Rule> = LazyLock::new(|| Rule::new(40, 16));
 
-/// Calls `f` for a set of reflections that stands for all light leaving at cosine `mu`; the view lies in the plane of the
-/// width `along`, `across` is the other one.
+/// Calls `f` for a set of reflections that stands for all light leaving at cosine `mu`; the view lies in the plane of
+/// the width `along`, `across` is the other one.
 fn visit(mu: f64, along: f64, across: f64, rule: &Rule, mut f: impl FnMut(Reflection)) {
     let mu = mu.clamp(0.0, 1.0);
     let sin_theta = ((1.0 - mu) * (1.0 + mu)).sqrt();
@@ -84,8 +84,8 @@ fn shadowing(cos_o: f64, stretched_o: f64, cos_i: f64, spread: f64) -> ([f64; 2]
     )
 }
 
-/// `1 - E`: what single scattering loses when F = 1, per [`Masking`], toward cosine `mu` in [0, 1]. The view lies in the
-/// plane of the width `along`, `across` is the other one; both in (0, 1].
+/// `1 - E`: what single scattering loses when F = 1, per [`Masking`], toward cosine `mu` in [0, 1]. The view lies in
+/// the plane of the width `along`, `across` is the other one; both in (0, 1].
 pub fn loss(mu: f64, along: f64, across: f64) -> [f64; 2] {
     loss_with(mu, along, across, &RULE)
 }

@@ -140,7 +140,8 @@ fn the_white_furnace_of_grooves_hardly_gains_and_loses_a_bounded_share() {
             // The table knows the plane of the view and the one across; in between it is an estimate.
             let ratio = alpha.min_element() / alpha.max_element();
             let loss = if ratio >= 0.3 { 0.05 } else { 0.13 };
-            // Separable masking hardly depends on the width along, so that the estimate is worst for the finest grooves.
+            // Separable masking hardly depends on the width along, so that the estimate is worst for the finest
+            // grooves.
             let gain = if ratio < 0.1 && masking == Masking::Separable { 0.03 } else { FURNACE_ERROR };
             assert!(most <= 1.0 + gain && least >= 1.0 - loss, "{masking:?} {alpha}: {least} {most}");
         }

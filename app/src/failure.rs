@@ -66,6 +66,11 @@ impl From<io::Error> for Failure {
     }
 }
 
+/// Text from a foreign file without line breaks and terminal sequences.
+pub fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -85,5 +90,6 @@ mod tests {
         let failure = Failure::input(Path::new("in/a.glb"), "mesh 0: empty\na.glb: mesh 1: empty");
         assert_eq!(failure.messages, ["in/a.glb: mesh 0: empty", "a.glb: mesh 1: empty"]);
         assert_eq!(Failure::resources("no\n  memory").messages, ["no memory"]);
+        assert_eq!(printable("a\n\u{1b}[2Jb \u{e9}"), "a\u{fffd}\u{fffd}[2Jb \u{e9}");
     }
 }

@@ -38,7 +38,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &
     let exit = result.unwrap_or_else(|failure| {
         for message in &failure.messages {
             // Nobody is left to tell when this fails too.
-            let _ = writeln!(err, "burnish: {message}");
+            let _ = writeln!(err, "burnish: {}", failure::printable(message));
         }
         failure.exit
     });

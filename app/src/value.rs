@@ -51,7 +51,8 @@ impl Pick {
         }
     }
 
-    /// Indices that are meant among `names`; several where a name occurs more than once. The error lists the names.
+    /// Indices that are meant among `names`, at least one; several where a name occurs more than once. The error lists
+    /// the names.
     pub fn among<'a>(&self, what: &str, names: impl Iterator<Item = &'a str>) -> Result<Vec<usize>, String> {
         let names: Vec<&str> = names.collect();
         let found: Vec<usize> = match self {

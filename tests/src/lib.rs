@@ -36,13 +36,16 @@ impl Need {
 }
 
 /// A test that fails by panicking, for libtest-mimic, and that is ignored visibly where a need is missing.
-pub fn trial(name: &str, needs: &'static [Need], body: impl FnOnce() + Send + 'static) -> Trial {
+pub fn trial(name: &'static str, needs: &'static [Need], body: impl FnOnce() + Send + 'static) -> Trial {
     Trial::ignorable_test(name, move || {
         let list = std::env::var("BURNISH_REQUIRE").unwrap_or_default();
         for need in needs {
             match verdict(*need, need.missing(), &list)? {
                 Completion::Completed => {}
-                ignored => return Ok(ignored),
+                Completion::Ignored { reason } => {
+                    eprintln!("ignored: {}: {name}", reason.as_deref().unwrap_or_default());
+                    return Ok(Completion::Ignored { reason });
+                }
             }
         }
         body();

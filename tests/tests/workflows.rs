@@ -309,6 +309,16 @@ fn doctor_finds_the_adapter() {
     assert!(doctor.contains("accepted") && doctor.contains("texture"), "{doctor}");
 }
 
+/// A 4 by 2 environment in the Radiance format, one grey for all directions: prepared in no time, unlike the studio.
+fn grey_environment(folder: &Path) -> PathBuf {
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    // Mantissas of 128 / 256 times 2^(129 - 128).
+    bytes.extend([128, 128, 128, 129].repeat(8));
+    let file = folder.join("studio.hdr");
+    fs::write(&file, bytes).expect("a writable folder");
+    file
+}
+
 /// Renders with few frames at a small size; `more` arguments come last.
 fn render(out: &Path, more: &[&str]) -> Outcome {
     burnish(&[&["render", "--size", "96x64", "--spp-jitter", "2", "--out", text(out)], more].concat())
@@ -328,8 +338,9 @@ fn render_writes_a_png() {
 fn render_writes_an_exr() {
     let folder = scratch_folder("exr");
     let (exr, png) = (folder.join("w.exr"), folder.join("w.png"));
-    render(&exr, &[]).succeeded();
-    render(&png, &["--exposure", "1", "--tone", "none"]).succeeded();
+    let environment = grey_environment(&folder);
+    render(&exr, &["--env", text(&environment)]).succeeded();
+    render(&png, &["--env", text(&environment), "--exposure", "1", "--tone", "none"]).succeeded();
     let (radiance, encoding) = read_picture(&exr).expect("a picture");
     assert_eq!((radiance.width, radiance.height, encoding), (96, 64, Encoding::Linear));
     assert!(radiance.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0));
@@ -347,7 +358,8 @@ fn a_metal_on_a_slot() {
     let folder = scratch_folder("metal");
     let model = triangle(&folder);
     // Straight in front of the triangle, whose lower left half of the picture it fills.
-    let view = ["--camera", "0.3,0.3,1,0.3,0.3,0,20", "--roughness", "1"];
+    let environment = grey_environment(&folder);
+    let view = ["--camera", "0.3,0.3,1,0.3,0.3,0,20", "--env", text(&environment)];
     let middle = |name: &str, more: &[&str]| {
         let file = folder.join(name);
         render(&file, &[&[text(&model)], &view[..], more].concat()).succeeded();
@@ -366,20 +378,12 @@ fn an_unwritable_picture() {
     assert!(!file.exists());
 }
 
-/// A 4 by 2 environment in the Radiance format, one grey for all directions.
-fn grey_environment() -> Vec<u8> {
-    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
-    // Mantissas of 128 / 256 times 2^(129 - 128).
-    bytes.extend([128, 128, 128, 129].repeat(8));
-    bytes
-}
-
 /// The lines that start with `./dev run` and a command, with files in a folder of the test and small pictures.
 fn readme_examples_run() {
     let folder = scratch_folder("readme");
     fs::create_dir_all(folder.join("docs/images")).expect("a writable folder");
     fs::write(folder.join("model.glb"), TRIANGLE).expect("a writable folder");
-    fs::write(folder.join("studio.hdr"), grey_environment()).expect("a writable folder");
+    let environment = grey_environment(&folder);
     let readme = fs::read_to_string(repository().join("README.md")).expect("the README");
     let examples: Vec<&str> = readme.lines().filter_map(|line| line.strip_prefix("    ./dev run ")).collect();
     let mut run = 0;
@@ -395,6 +399,9 @@ fn readme_examples_run() {
                 None => args.extend(["--size".into(), "48x27".into()]),
             }
             args.extend(["--spp-jitter".into(), "1".into()]);
+            if !args.contains(&"--env".into()) {
+                args.extend(["--env".into(), text(&environment).into()]);
+            }
         }
         let outcome = burnish(&args.iter().map(String::as_str).collect::<Vec<_>>());
         assert_eq!(outcome.exit, OK, "{example}: {}", outcome.err);

@@ -7,7 +7,7 @@ use burnish_core::scene::{Camera, Light, LightKind, Projection, Scene, Texels};
 use serde::Serialize;
 
 use super::{spaced, write_json};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, printable};
 use crate::source::{Opened, SceneArg};
 
 #[derive(clap::Args)]
@@ -139,7 +139,7 @@ impl Info {
     }
 
     fn write(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        writeln!(out, "name         {}", self.name)?;
+        writeln!(out, "name         {}", printable(&self.name))?;
         match self.bounds {
             Some([min, max]) => writeln!(out, "bounds       {} to {} m", spaced(min), spaced(max))?,
             None => writeln!(out, "bounds       empty")?,
@@ -149,11 +149,11 @@ impl Info {
         writeln!(out, "triangles    {}", self.triangles)?;
         writeln!(out, "materials    {}", self.materials.len())?;
         for (i, material) in self.materials.iter().enumerate() {
-            writeln!(out, "  #{i} {}", material.line())?;
+            writeln!(out, "  #{i} {}", printable(&material.line()))?;
         }
         writeln!(out, "lights       {}", self.lights.len())?;
         for (i, light) in self.lights.iter().enumerate() {
-            writeln!(out, "  #{i} {}: {}, intensity {}", light.name, light.kind, spaced(light.intensity))?;
+            writeln!(out, "  #{i} {}: {}, intensity {}", printable(&light.name), light.kind, spaced(light.intensity))?;
         }
         writeln!(out, "cameras      {}", self.cameras.len())?;
         for (i, camera) in self.cameras.iter().enumerate() {
@@ -161,21 +161,21 @@ impl Info {
             writeln!(
                 out,
                 "  #{i} {}: at {} m, looks along {}, {angle}",
-                camera.name,
+                printable(&camera.name),
                 spaced(camera.eye),
                 spaced(camera.direction)
             )?;
         }
         writeln!(out, "images       {}", self.images.len())?;
         for (i, image) in self.images.iter().enumerate() {
-            writeln!(out, "  #{i} {}: {}x{}, {} bits", image.name, image.width, image.height, image.bits)?;
+            writeln!(out, "  #{i} {}: {}x{}, {} bits", printable(&image.name), image.width, image.height, image.bits)?;
         }
         match &self.environment {
-            Some(e) => writeln!(out, "environment  {}, {}x{}", e.name, e.width, e.height)?,
+            Some(e) => writeln!(out, "environment  {}, {}x{}", printable(&e.name), e.width, e.height)?,
             None => writeln!(out, "environment  none")?,
         }
         for notice in &self.notices {
-            writeln!(out, "notice       {notice}")?;
+            writeln!(out, "notice       {}", printable(notice))?;
         }
         Ok(())
     }

@@ -15,7 +15,7 @@ use burnish_core::scene::{Camera, Scene, gallery};
 use burnish_render::{Gpu, Renderer, View};
 use glam::UVec2;
 
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, printable};
 use crate::source::{self, Opened, SceneArg};
 use crate::value::{self, CameraChoice, MetalChoice};
 
@@ -60,8 +60,8 @@ pub struct Args {
 }
 
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    let shows = PictureFormat::of(&args.out) == Ok(PictureFormat::Png);
-    if !shows && (args.tone.is_some() || args.exposure.is_some()) {
+    let is_png = PictureFormat::of(&args.out) == Ok(PictureFormat::Png);
+    if !is_png && (args.tone.is_some() || args.exposure.is_some()) {
         return Err(Failure::usage(
             "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
         ));
@@ -85,7 +85,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     notices.extend(set_materials(&mut scene, &args, &settings)?);
     let camera = camera(&scene, &args, from_gallery)?;
     for notice in &notices {
-        writeln!(err, "burnish: notice: {notice}")?;
+        writeln!(err, "burnish: notice: {}", printable(notice))?;
     }
 
     let start = Instant::now();

@@ -18,6 +18,19 @@ fn frame_new(n: vec3f) -> Frame {
     return Frame(vec3f(1.0 + s * n.x * n.x * a, s * c, -s * n.x), vec3f(c, s + n.y * n.y * a, -n.y), n);
 }
 
+// The frame about the unit vector n with the tangent nearest to `tangent`; frame_new where that has no direction.
+fn frame_with_tangent(n: vec3f, tangent: vec3f) -> Frame {
+    let across = tangent - n * dot(n, tangent);
+    // Below this share of its length the remainder is rounding and points anywhere.
+    if !(dot(across, across) > 1e-8 * dot(tangent, tangent)) {
+        return frame_new(n);
+    }
+    let first = normalize(across);
+    // Once more, since the first subtraction cancels digits where the two are close.
+    let t = normalize(first - n * dot(n, first));
+    return Frame(t, cross(n, t), n);
+}
+
 fn frame_to_local(frame: Frame, v: vec3f) -> vec3f {
     return vec3f(dot(v, frame.t), dot(v, frame.b), dot(v, frame.n));
 }

@@ -51,8 +51,8 @@ fn under_grooves_it_returns_all_light_within_a_few_percent() {
             println!("{masking:?} {alpha}: {least:.4} to {most:.4}");
             // As for metal, the tables are exact in the plane of the grooves and across it, an estimate in between,
             // worst at grazing over grooves a hundred times longer than wide.
-            let gain = if alpha.min_element() < 0.05 * alpha.max_element() { 0.12 } else { 0.03 };
-            assert!(least > 0.98 && most < 1.0 + gain, "{masking:?} {alpha}: {least} {most}");
+            let gain = if alpha.min_element() < 0.05 * alpha.max_element() { 0.12 } else { 0.01 };
+            assert!(least > 0.96 && most < 1.0 + gain, "{masking:?} {alpha}: {least} {most}");
         }
     }
 }

@@ -28,8 +28,10 @@ pub const ALBEDO_SCHLICK_MEAN: u32 = ALBEDO_SCHLICK + ALBEDO_MU * ALBEDO_ALPHA *
 pub const ALBEDO_STRIDE: u32 = ALBEDO_SCHLICK_MEAN + ALBEDO_ALPHA * ALBEDO_ALPHA;
 /// `ALPHA_MIN^(1/4)`, where the alpha axis starts.
 pub const ALBEDO_ROOT_MIN: f32 = 0.177_827_94;
-/// How far the slopes across the view are narrowed for the loss, see [`toward`]; for the Schlick ratio they are not.
-pub const ALBEDO_NARROWING: f32 = 0.42;
+/// How far the slopes across the view are narrowed for the loss; fitted, see [`toward`].
+pub const ALBEDO_LOSS_NARROWING: f32 = 0.42;
+/// How far the slopes along the view are narrowed for the Schlick ratio; fitted, see [`toward`].
+pub const ALBEDO_SCHLICK_NARROWING: f32 = 0.2;
 
 /// The tables of both maskings in one flat array.
 #[derive(Debug)]
@@ -112,7 +114,7 @@ impl AlbedoTable {
     }
 
     fn loss(&self, w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
-        let widths = toward(w, alpha, ALBEDO_NARROWING);
+        let widths = toward(w, alpha, Vec2::new(0.0, ALBEDO_LOSS_NARROWING));
         self.loss_in_plane(w.z, widths.x, widths.y, masking)
     }
 
@@ -125,7 +127,7 @@ impl AlbedoTable {
     }
 
     fn schlick_ratio(&self, w: Vec3, alpha: Vec2, masking: Masking) -> f32 {
-        let widths = toward(w, alpha, 0.0);
+        let widths = toward(w, alpha, Vec2::new(ALBEDO_SCHLICK_NARROWING, 0.0));
         let first = masking as u32 * ALBEDO_STRIDE + ALBEDO_SCHLICK;
         self.volume(first, w.z.clamp(0.0, 1.0).sqrt(), widths.x, widths.y)
     }
@@ -189,12 +191,12 @@ fn node_alpha(node: u32) -> f64 {
 
 /// Widths along the plane of `w` and across it, for which the table is looked up.
 ///
-/// Slopes have the covariance `diag(at^2, ab^2)`. Along the azimuth phi of `w` their width is `p`; across it `q`, which
-/// shrinks to `at ab / p` once the slope along is known. The loss lies between: `p^2 = mix(ab^2, at^2, cos^2 phi)` and
-/// `q^2 = mix(mix(at^2, ab^2, cos^2 phi), (at ab / p)^2, narrowing)`, fitted for each table. Toward the normal phi
-/// turns to the wider axis, so that nothing jumps where it is undefined. Exact for equal widths, at the normal and
-/// along the wider axis.
-pub fn toward(w: Vec3, alpha: Vec2, narrowing: f32) -> Vec2 {
+/// Slopes have the covariance `diag(at^2, ab^2)`. With phi the azimuth of `w` their width along it is `p`, across it
+/// `q`: `p^2 = mix(ab^2, at^2, cos^2 phi)`, `q^2 = mix(at^2, ab^2, cos^2 phi)`; once the slope in one direction is
+/// known the width in the other shrinks to `at ab / q` or `at ab / p`. The truth lies between: `narrowing` is the share
+/// of the way (on the squares) for the width along and the width across. Toward the normal phi turns to the wider axis,
+/// so that nothing jumps where it is undefined. Exact for equal widths, at the normal and along the wider axis.
+pub fn toward(w: Vec3, alpha: Vec2, narrowing: Vec2) -> Vec2 {
     let a = clamp_alpha(alpha);
     let a2 = a * a;
     let cos2 = 1.0 - w.x * w.x - w.y * w.y;
@@ -202,10 +204,9 @@ pub fn toward(w: Vec3, alpha: Vec2, narrowing: f32) -> Vec2 {
     // cos^2 phi (1 - cos^8 theta), where sin^2 theta divides out.
     let turned = w.x * w.x * (1.0 + cos2) * (1.0 + cos4);
     let c = (turned + if a.x > a.y { cos4 * cos4 } else { 0.0 }).clamp(0.0, 1.0);
-    let p2 = a2.y + (a2.x - a2.y) * c;
-    let q2 = a2.x + (a2.y - a2.x) * c;
-    let narrowed2 = a2.x * a2.y / p2;
-    Vec2::new(p2, q2 + (narrowed2 - q2) * narrowing).map(f32::sqrt)
+    let wide = Vec2::new(a2.y + (a2.x - a2.y) * c, a2.x + (a2.y - a2.x) * c);
+    let narrow = a2.x * a2.y / Vec2::new(wide.y, wide.x);
+    (wide + (narrow - wide) * narrowing).map(f32::sqrt)
 }
 
 /// Energy that single scattering loses when F = 1: `1 - E(w)`. Error of the table 5e-3 for equal widths.

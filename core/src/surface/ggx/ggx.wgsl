@@ -16,8 +16,9 @@ const GGX_ALBEDO_SCHLICK_MEAN: u32 = GGX_ALBEDO_SCHLICK + GGX_ALBEDO_MU * GGX_AL
 const GGX_ALBEDO_STRIDE: u32 = GGX_ALBEDO_SCHLICK_MEAN + GGX_ALBEDO_ALPHA * GGX_ALBEDO_ALPHA;
 // alpha_min^(1/4), where the alpha axis of the tables starts.
 const GGX_ALBEDO_ROOT_MIN: f32 = 0.17782794;
-// How far the slopes across the view are narrowed for the loss by those along it; for the Schlick ratio they are not.
-const GGX_ALBEDO_NARROWING: f32 = 0.42;
+// How far the slopes across the view are narrowed for the loss, those along it for the Schlick ratio.
+const GGX_ALBEDO_LOSS_NARROWING: f32 = 0.42;
+const GGX_ALBEDO_SCHLICK_NARROWING: f32 = 0.2;
 
 fn ggx_clamp_alpha(alpha: vec2f) -> vec2f {
     return clamp(alpha, vec2f(GGX_ALPHA_MIN), vec2f(1.0));
@@ -179,7 +180,7 @@ fn ggx_loss_in_plane(mu: f32, along: f32, across: f32, masking: u32) -> f32 {
 }
 
 // Widths along the plane of w and across it, for which the table is looked up.
-fn ggx_toward(w: vec3f, alpha: vec2f, narrowing: f32) -> vec2f {
+fn ggx_toward(w: vec3f, alpha: vec2f, narrowing: vec2f) -> vec2f {
     let a = ggx_clamp_alpha(alpha);
     let a2 = a * a;
     let cos2 = 1.0 - w.x * w.x - w.y * w.y;
@@ -187,15 +188,14 @@ fn ggx_toward(w: vec3f, alpha: vec2f, narrowing: f32) -> vec2f {
     // The azimuth turns to the wider axis toward the normal, where it is undefined.
     let turned = w.x * w.x * (1.0 + cos2) * (1.0 + cos4);
     let c = clamp(turned + select(0.0, cos4 * cos4, a.x > a.y), 0.0, 1.0);
-    let p2 = a2.y + (a2.x - a2.y) * c;
-    let q2 = a2.x + (a2.y - a2.x) * c;
-    let narrowed2 = a2.x * a2.y / p2;
-    return sqrt(vec2f(p2, q2 + (narrowed2 - q2) * narrowing));
+    let wide = vec2f(a2.y + (a2.x - a2.y) * c, a2.x + (a2.y - a2.x) * c);
+    let narrow = a2.x * a2.y / wide.yx;
+    return sqrt(mix(wide, narrow, narrowing));
 }
 
 // Energy that single scattering loses toward w when F = 1.
 fn ggx_loss(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
-    let widths = ggx_toward(w, alpha, GGX_ALBEDO_NARROWING);
+    let widths = ggx_toward(w, alpha, vec2f(0.0, GGX_ALBEDO_LOSS_NARROWING));
     return ggx_loss_in_plane(w.z, widths.x, widths.y, masking);
 }
 
@@ -220,7 +220,7 @@ fn ggx_albedo_mean(alpha: f32, masking: u32) -> f32 {
 // Mean of (1 - x)^5 over the light that is reflected toward w, x = cosine at the microfacet: with f0 and f90 the
 // directional albedo is E mix(f0, f90, this).
 fn ggx_schlick_ratio(w: vec3f, alpha: vec2f, masking: u32) -> f32 {
-    let widths = ggx_toward(w, alpha, 0.0);
+    let widths = ggx_toward(w, alpha, vec2f(GGX_ALBEDO_SCHLICK_NARROWING, 0.0));
     let first = masking * GGX_ALBEDO_STRIDE + GGX_ALBEDO_SCHLICK;
     return ggx_albedo_volume(first, sqrt(clamp(w.z, 0.0, 1.0)), widths.x, widths.y);
 }

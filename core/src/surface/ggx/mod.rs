@@ -1,8 +1,7 @@
 //! GGX microfacets: rough metal, and the reflection of rough dielectrics.
 //!
-//! The local frame has z = n; `alpha` holds the widths along x and y, each clamped to the range from [`ALPHA_MIN`] to
-//! 1. Below the floor a surface is a mirror: [`is_mirror`] tells a tracer to treat it as one, everything else stays at
-//! the floor.
+//! The local frame has z = n; `alpha` holds the widths along x and y, each held between [`ALPHA_MIN`] and one. Below
+//! the floor a surface is a mirror: [`is_mirror`] tells a tracer to treat it as one, all else stays at the floor.
 //!
 //! - this file: distribution, masking, single-scattering BRDF and its sampling
 //! - [`albedo`]: what single scattering reflects in total, tabulated

@@ -267,6 +267,10 @@ impl Renderer {
             multiple_scattering: u32::from(settings.multiple_scattering),
             frame,
             prefiltered_mips: self.maps.prefiltered.mip_level_count() as f32,
+            source_count: self.maps.source_count,
+            wide_alpha: self.maps.wide_alpha,
+            pad0: 0,
+            pad1: 0,
         }
     }
 }

@@ -37,21 +37,21 @@ pub static SHADOW: Shader = Shader {
 pub static ENVIRONMENT: Shader = Shader {
     name: "environment",
     leaves: &[&classical::WGSL],
-    files: &[NO_TABLES, NO_CUBES, include_str!("pass/environment/environment.wgsl")],
+    files: &[NO_TABLES, NO_CUBES, TYPES, include_str!("pass/environment/environment.wgsl")],
 };
 
 /// Lights the G-buffer.
 pub static CLASSICAL: Shader = Shader {
     name: "classical",
     leaves: &[&classical::WGSL],
-    files: &[NO_SOURCES, TYPES, TEXEL, SCENE_BINDINGS, SHADE, include_str!("pass/classical/classical.wgsl")],
+    files: &[TYPES, TEXEL, SCENE_BINDINGS, SHADE, include_str!("pass/classical/classical.wgsl")],
 };
 
 /// Blended surfaces.
 pub static FORWARD: Shader = Shader {
     name: "forward",
     leaves: &[&classical::WGSL],
-    files: &[NO_SOURCES, TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
+    files: &[TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
 };
 
 /// Adds a frame to the sum.
@@ -73,10 +73,8 @@ const NO_TABLES: &str = "
 fn ggx_albedo_entry(index: u32) -> f32 { return 0.0; }
 fn fresnel_table(table: u32, entry: u32) -> vec3f { return vec3f(0.0); }
 ";
-const NO_SOURCES: &str = "
-fn classical_source(index: u32) -> mat2x3f { return mat2x3f(); }
-";
 const NO_CUBES: &str = "
+fn classical_dimmed(direction: vec3f, level: f32) -> vec3f { return vec3f(0.0); }
 fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f { return vec3f(0.0); }
 fn classical_irradiance(direction: vec3f) -> vec3f { return vec3f(0.0); }
 ";

@@ -48,8 +48,14 @@ macro_rules! shared {
 }
 
 /// Every shared struct.
-pub const STRUCTS: &[Struct] =
-    &[ViewData::LAYOUT, TextureSlot::LAYOUT, MaterialData::LAYOUT, InstanceData::LAYOUT, LightData::LAYOUT];
+pub const STRUCTS: &[Struct] = &[
+    ViewData::LAYOUT,
+    SourceData::LAYOUT,
+    TextureSlot::LAYOUT,
+    MaterialData::LAYOUT,
+    InstanceData::LAYOUT,
+    LightData::LAYOUT,
+];
 
 /// Every shared constant with its value.
 pub const CONSTANTS: &[(&str, u32)] = &[
@@ -100,6 +106,20 @@ shared! {
         multiple_scattering: u32,
         frame: u32,
         prefiltered_mips: f32,
+        source_count: u32,
+        wide_alpha: f32,
+        pad0: u32,
+        pad1: u32,
+    }
+}
+
+shared! {
+    /// A small bright source of the environment, in its own frame.
+    pub struct SourceData {
+        direction: Vec3,
+        pad0: u32,
+        power: Vec3,
+        pad1: u32,
     }
 }
 

@@ -42,6 +42,20 @@ struct ViewData {
     // Index of the jittered frame, from 0: seeds the sample rotation.
     frame: u32,
     prefiltered_mips: f32,
+    // Bright sources of the environment, and the width from which they are points to a lobe.
+    source_count: u32,
+    wide_alpha: f32,
+    pad0: u32,
+    pad1: u32,
+}
+
+// A small bright source of the environment, in its own frame.
+struct SourceData {
+    direction: vec3f,
+    pad0: u32,
+    // Radiance times solid angle, over the scale of the cubes.
+    power: vec3f,
+    pad1: u32,
 }
 
 struct TextureSlot {

@@ -1,9 +1,25 @@
 // Environment light from infinitely far away. The pass supplies
 //   classical_radiance(direction, level)     cube of radiance, box-filtered mips
+//   classical_dimmed(direction, level)       the same without the brightest texels, which are sources
 //   classical_prefiltered(direction, level)  cube of GGX-filtered radiance, one width a level
 //   classical_irradiance(direction)          integral of radiance times cosine
 //   classical_source(index)                  a small bright source: direction; radiance times solid angle
 // and ggx_albedo_entry, through which the tables of mean reflectance are read as well.
+
+// How the reflection is computed.
+struct ClassicalLobes {
+    // 0 for the split sum, else visible normals drawn per pixel.
+    samples: u32,
+    // Number of bright sources.
+    sources: u32,
+    // Offset of the sample points on the unit torus.
+    rotation: vec2f,
+    // Levels of the radiance and of the prefiltered cube.
+    radiance_levels: f32,
+    prefiltered_levels: f32,
+    // Width from which a bright texel is a point to a lobe.
+    wide: f32,
+}
 
 // Level of the prefiltered cube for a roughness: fine steps where the lobe changes fast.
 fn classical_level(roughness: f32, levels: f32) -> f32 {
@@ -142,12 +158,14 @@ fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f
     return albedo * classical_prefiltered(direction, classical_level(roughness, levels));
 }
 
-// Reflection by filtered importance sampling of visible normals.
-fn classical_sampled(s: Surface, base: Frame, wo: vec3f, n: u32, rotation: vec2f, levels: f32) -> vec3f {
+// Reflection by filtered importance sampling of visible normals. A wide lobe's samples would meet a lamp of a few texels
+// or miss it: there the brightest texels are left out of the map and reflected one by one.
+fn classical_sampled(s: Surface, base: Frame, wo: vec3f, lobes: ClassicalLobes) -> vec3f {
+    let wide = min(s.alpha.x, s.alpha.y) >= lobes.wide;
     let g1 = ggx_masking(wo, s.alpha);
     var sum = vec3f(0.0);
-    for (var i = 0u; i < n; i++) {
-        let u = fract(sampling_hammersley(i, n) + rotation);
+    for (var i = 0u; i < lobes.samples; i++) {
+        let u = fract(sampling_hammersley(i, lobes.samples) + lobes.rotation);
         let wm = ggx_sample_wm(wo, s.alpha, u);
         let wi = reflect(-wo, wm);
         if wi.z <= 0.0 {
@@ -156,27 +174,41 @@ fn classical_sampled(s: Surface, base: Frame, wo: vec3f, n: u32, rotation: vec2f
         let pdf = ggx_pdf(wo, wi, s.alpha);
         let weight = ggx_shadowing_masking(wo, wi, s.alpha, s.masking) / max(g1, 1e-12);
         let direction = frame_to_world(base, wi);
-        let level = classical_footprint(direction, pdf, n, levels, 0.0);
-        sum += weight * classical_fresnel(s, dot(wi, wm)) * classical_radiance(direction, level);
+        let level = classical_footprint(direction, pdf, lobes.samples, lobes.radiance_levels, 0.0);
+        var radiance: vec3f;
+        if wide {
+            radiance = classical_dimmed(direction, level);
+        } else {
+            radiance = classical_radiance(direction, level);
+        }
+        sum += weight * classical_fresnel(s, dot(wi, wm)) * radiance;
     }
-    return sum / f32(n);
+    sum /= f32(lobes.samples);
+    for (var i = 0u; wide && i < lobes.sources; i++) {
+        let source = classical_source(i);
+        let wi = frame_to_local(base, source[0]);
+        if wi.z > 0.0 {
+            let facet = ggx_microfacet(wo, wi, s.alpha, s.masking);
+            sum += facet.y * wi.z * classical_fresnel(s, facet.x) * source[1];
+        }
+    }
+    return sum;
 }
 
-// Light of the environment that the surface sends toward the viewer. `to_viewer` is a unit vector in world space;
-// levels: of the radiance cube, of the prefiltered cube; samples: 0 for the split sum.
+// Light of the environment that the surface sends toward the viewer. `to_viewer` is a unit vector in world space.
 fn classical_environment(
     s: Surface, table: u32, base: Frame, coat: Frame, to_viewer: vec3f, occlusion: f32,
-    samples: u32, rotation: vec2f, levels: vec2f,
+    lobes: ClassicalLobes,
 ) -> vec3f {
     let wo = classical_facing(frame_to_local(base, to_viewer));
     let width = classical_width(s.alpha);
     let irradiance = occlusion * classical_irradiance(base.n) * INV_PI;
 
     var reflected: vec3f;
-    if samples == 0u {
-        reflected = classical_split_sum(s, table, base, wo, levels.y);
+    if lobes.samples == 0u {
+        reflected = classical_split_sum(s, table, base, wo, lobes.prefiltered_levels);
     } else {
-        reflected = classical_sampled(s, base, wo, samples, rotation, levels.x);
+        reflected = classical_sampled(s, base, wo, lobes);
     }
     var value = classical_occlusion(wo.z, width, occlusion) * reflected;
     if s.metallic > 0.0 && s.multiple_scattering {
@@ -198,10 +230,10 @@ fn classical_environment(
     top.masking = s.masking;
     let coat_wo = classical_facing(frame_to_local(coat, to_viewer));
     var coat_light: vec3f;
-    if samples == 0u {
-        coat_light = classical_split_sum(top, 0u, coat, coat_wo, levels.y);
+    if lobes.samples == 0u {
+        coat_light = classical_split_sum(top, 0u, coat, coat_wo, lobes.prefiltered_levels);
     } else {
-        coat_light = classical_sampled(top, coat, coat_wo, samples, rotation, levels.x);
+        coat_light = classical_sampled(top, coat, coat_wo, lobes);
     }
     // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
     let passed = coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking);

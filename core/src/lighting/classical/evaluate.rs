@@ -16,6 +16,12 @@ use crate::surface::{coat, dielectric};
 pub trait Maps {
     /// Radiance, box-filtered at a level of the radiance cube.
     fn radiance(&self, direction: Vec3, level: f32) -> Vec3;
+    /// The same without the light of [`Maps::sources`].
+    fn dimmed(&self, direction: Vec3, level: f32) -> Vec3;
+    /// Bright sources; directions in world space.
+    fn sources(&self) -> &[Source];
+    /// Width from which a bright texel is a point to a lobe, see [`super::wide_alpha`].
+    fn wide_alpha(&self) -> f32;
     /// Radiance filtered with the lobe of a level of the prefiltered cube.
     fn prefiltered(&self, direction: Vec3, level: f32) -> Vec3;
     /// Integral of radiance times cosine about a normal.
@@ -187,7 +193,10 @@ fn mean_fresnel(table: &[f32], mu: f32, alpha: f32) -> Vec3 {
     Vec3::new(channel(0), channel(1), channel(2))
 }
 
+/// Filtered importance sampling of visible normals. A wide lobe's samples would meet a lamp of a few texels or miss it:
+/// there the brightest texels are left out of the map and reflected one by one.
 fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) -> Vec3 {
+    let wide = s.alpha.min_element() >= maps.wide_alpha();
     let g1 = ggx::masking(wo, s.alpha).max(1e-12);
     let mut sum = Vec3::ZERO;
     for i in 0..lobes.samples {
@@ -201,9 +210,18 @@ fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) 
         let weight = ggx::shadowing_masking(wo, wi, s.alpha, s.masking) / g1;
         let direction = base.to_world(wi);
         let level = footprint(direction, pdf, lobes.samples, maps.radiance_levels(), 0.0);
-        sum += weight * shared_fresnel(s, wi.dot(wm)) * maps.radiance(direction, level);
+        let radiance = if wide { maps.dimmed(direction, level) } else { maps.radiance(direction, level) };
+        sum += weight * shared_fresnel(s, wi.dot(wm)) * radiance;
     }
-    sum / lobes.samples as f32
+    sum /= lobes.samples as f32;
+    for source in if wide { maps.sources() } else { &[] } {
+        let wi = base.to_local(source.direction);
+        if wi.z > 0.0 {
+            let facet = ggx::microfacet(wo, wi, s.alpha, s.masking);
+            sum += facet.y * wi.z * shared_fresnel(s, facet.x) * source.power;
+        }
+    }
+    sum
 }
 
 /// Fresnel of the reflection that metal and dielectric share.

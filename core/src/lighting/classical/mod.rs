@@ -29,6 +29,7 @@ pub static WGSL: Leaf = Leaf {
     needs: &[&layered::WGSL],
     externs: "
 fn classical_radiance(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
+fn classical_dimmed(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
 fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f { return vec3f(1.0); }
 fn classical_irradiance(direction: vec3f) -> vec3f { return vec3f(PI); }
 fn classical_source(index: u32) -> mat2x3f { return mat2x3f(vec3f(0.0, 1.0, 0.0), vec3f(1.0)); }
@@ -112,7 +113,12 @@ pub fn roughness(level: f32, levels: f32) -> f32 {
 
 /// Samples for a texel of a prefiltered level: coarse levels have few texels and wide lobes.
 pub fn prefilter_samples(level: u32) -> u32 {
-    (128 << level).min(4096)
+    256 << level.saturating_sub(1).min(4)
+}
+
+/// Width from which a bright texel of a map of `width` columns is a point to a lobe: three texels.
+pub fn wide_alpha(width: u32) -> f32 {
+    3.0 * std::f32::consts::TAU / width.max(1) as f32
 }
 
 /// Nodes of the cosine weights behind [`mean_fresnel_table`], per masking.

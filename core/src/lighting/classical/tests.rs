@@ -109,6 +109,15 @@ impl Maps for Constant {
     fn radiance(&self, _: Vec3, _: f32) -> Vec3 {
         Vec3::splat(self.0)
     }
+    fn dimmed(&self, direction: Vec3, level: f32) -> Vec3 {
+        self.radiance(direction, level)
+    }
+    fn sources(&self) -> &[Source] {
+        &[]
+    }
+    fn wide_alpha(&self) -> f32 {
+        0.02
+    }
     fn prefiltered(&self, _: Vec3, _: f32) -> Vec3 {
         Vec3::splat(self.0)
     }
@@ -129,6 +138,15 @@ struct Tilted;
 impl Maps for Tilted {
     fn radiance(&self, direction: Vec3, _: f32) -> Vec3 {
         Vec3::splat(1.0 + direction.x)
+    }
+    fn dimmed(&self, direction: Vec3, level: f32) -> Vec3 {
+        self.radiance(direction, level)
+    }
+    fn sources(&self) -> &[Source] {
+        &[]
+    }
+    fn wide_alpha(&self) -> f32 {
+        0.02
     }
     fn prefiltered(&self, _: Vec3, _: f32) -> Vec3 {
         Vec3::ZERO

@@ -31,6 +31,8 @@ pub fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             buffer_entry(6, fragment, storage),
             buffer_entry(7, fragment, storage),
             buffer_entry(8, fragment, storage),
+            texture_entry(9, float, cube),
+            buffer_entry(10, fragment, storage),
         ],
     })
 }
@@ -43,7 +45,7 @@ pub fn light_group(
     shadows: &Shadows,
     tables: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
-    let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance].map(cube_view);
+    let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance, &maps.dimmed].map(cube_view);
     let cube_sampler = cube_sampler(&gpu.device);
     let shadow_sampler = shadow::sampler(&gpu.device);
     let resources = [
@@ -56,6 +58,8 @@ pub fn light_group(
         shadows.lights.as_entire_binding(),
         shadows.clip_from_world.as_entire_binding(),
         tables.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&cubes[3]),
+        maps.sources.as_entire_binding(),
     ];
     let entries: Vec<_> =
         (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();

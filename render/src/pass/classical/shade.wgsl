@@ -9,6 +9,8 @@
 @group(2) @binding(6) var<storage, read> lights: array<LightData>;
 @group(2) @binding(7) var<storage, read> shadow_clip_from_world: array<mat4x4f>;
 @group(2) @binding(8) var<storage, read> tables: array<f32>;
+@group(2) @binding(9) var dimmed_cube: texture_cube<f32>;
+@group(2) @binding(10) var<storage, read> sources: array<SourceData>;
 
 fn ggx_albedo_entry(index: u32) -> f32 {
     return tables[index];
@@ -30,6 +32,19 @@ fn environment_direction(d: vec3f) -> vec3f {
 fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
     return view.environment_scale
         * textureSampleLevel(radiance_cube, cube_sampler, environment_direction(direction), level).rgb;
+}
+
+fn classical_dimmed(direction: vec3f, level: f32) -> vec3f {
+    return view.environment_scale
+        * textureSampleLevel(dimmed_cube, cube_sampler, environment_direction(direction), level).rgb;
+}
+
+// Direction in the world and radiance times solid angle.
+fn classical_source(index: u32) -> mat2x3f {
+    let d = sources[index].direction;
+    let c = view.environment_cos;
+    let s = view.environment_sin;
+    return mat2x3f(vec3f(c * d.x + s * d.z, d.y, -s * d.x + c * d.z), view.environment_scale * sources[index].power);
 }
 
 fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f {
@@ -153,7 +168,9 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     }
     let hash = sampling_pcg(pixel.x + sampling_pcg(pixel.y + sampling_pcg(view.frame)));
     let rotation = vec2f(sampling_unit(hash), sampling_unit(sampling_pcg(hash)));
-    let levels = vec2f(view.environment_mips, view.prefiltered_mips);
-    value += classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, view.samples, rotation, levels);
+    let lobes = ClassicalLobes(
+        view.samples, view.source_count, rotation, view.environment_mips, view.prefiltered_mips, view.wide_alpha,
+    );
+    value += classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, lobes);
     return value;
 }

@@ -16,14 +16,6 @@ struct Params {
     pad1: u32,
 }
 
-struct Source {
-    direction: vec3f,
-    pad0: f32,
-    // Radiance times solid angle, in the scale of the cubes.
-    power: vec3f,
-    pad1: f32,
-}
-
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var equirectangular: texture_2d<f32>;
 @group(0) @binding(2) var finer: texture_2d_array<f32>;
@@ -31,7 +23,7 @@ struct Source {
 @group(0) @binding(4) var cube_sampler: sampler;
 @group(0) @binding(5) var target_level: texture_storage_2d_array<rgba16float, write>;
 
-@group(0) @binding(6) var<storage, read> sources: array<Source>;
+@group(0) @binding(6) var<storage, read> sources: array<SourceData>;
 
 fn classical_source(index: u32) -> mat2x3f {
     return mat2x3f(sources[index].direction, sources[index].power);

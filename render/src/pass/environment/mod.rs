@@ -5,10 +5,10 @@
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
+use crate::layout::types::SourceData;
 use crate::renderer::RenderError;
 use crate::shader;
 
@@ -31,6 +31,14 @@ pub struct EnvironmentMaps {
     pub radiance: wgpu::Texture,
     /// GGX-filtered radiance over scale; level widths by `classical::roughness`.
     pub prefiltered: wgpu::Texture,
+    /// Radiance over scale without the light of the sources.
+    pub dimmed: wgpu::Texture,
+    /// `SourceData` of the brightest texels, never empty.
+    pub sources: wgpu::Buffer,
+    /// How many of them count.
+    pub source_count: u32,
+    /// Width from which they are points to a lobe.
+    pub wide_alpha: f32,
     /// Irradiance over scale.
     pub irradiance: wgpu::Texture,
     /// Factor from a texel to radiance.
@@ -47,16 +55,6 @@ struct Params {
     cap: f32,
     sources: u32,
     pad: [u32; 2],
-}
-
-/// A small bright source, in the scale of the cubes.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct SourceData {
-    direction: Vec3,
-    pad0: f32,
-    power: Vec3,
-    pad1: f32,
 }
 
 /// Pipelines that build [`EnvironmentMaps`].
@@ -113,34 +111,41 @@ impl EnvironmentPass {
         let prefiltered_levels = levels - COARSEST.ilog2();
         let largest = environment.texels.iter().map(|c| c.max_element()).fold(0.0, f32::max);
         let scale = (largest / STORED_MAX).max(1.0);
+        let split = classical::split(environment);
         let maps = EnvironmentMaps {
             radiance: cube(gpu, "radiance", face, levels),
+            dimmed: cube(gpu, "dimmed radiance", face, levels),
+            sources: source_buffer(gpu, &split, scale),
+            source_count: split.sources.len() as u32,
+            wide_alpha: classical::wide_alpha(environment.width),
             prefiltered: cube(gpu, "prefiltered", face, prefiltered_levels),
             irradiance: cube(gpu, "irradiance", IRRADIANCE_FACE, 1),
             scale,
         };
-        let split = classical::split(environment);
         let steps = Steps {
             pass: self,
             gpu,
             source: &source,
             blank: &cube(gpu, "blank", 1, 1),
-            bright: &source_buffer(gpu, &split, scale),
-            source_count: split.sources.len() as u32,
+            bright: &maps.sources,
             levels,
             scale,
         };
         steps.run(&self.from_equirectangular, Input::Map { cap: f32::MAX }, (&maps.radiance, 0), Lobe::NONE);
         steps.downsample(&maps.radiance);
         steps.run(&self.copy, Input::Level(&maps.radiance, 0), (&maps.prefiltered, 0), Lobe::NONE);
-        // Lobes are filtered from what is left without the brightest texels, which are added one by one.
-        let dimmed = cube(gpu, "dimmed radiance", face, levels);
-        steps.run(&self.from_equirectangular, Input::Map { cap: split.cap }, (&dimmed, 0), Lobe::NONE);
-        steps.downsample(&dimmed);
+        // Wide lobes are filtered from what is left without the brightest texels, which are added one by one. To a
+        // narrow lobe a texel is no point; its samples are dense enough to find every texel.
+        steps.run(&self.from_equirectangular, Input::Map { cap: split.cap }, (&maps.dimmed, 0), Lobe::NONE);
+        steps.downsample(&maps.dimmed);
         for level in 1..prefiltered_levels {
             let roughness = classical::roughness(level as f32, prefiltered_levels as f32);
-            let lobe = Lobe { alpha: roughness * roughness, samples: classical::prefilter_samples(level) };
-            steps.run(&self.prefilter, Input::Cube(&dimmed), (&maps.prefiltered, level), lobe);
+            let alpha = roughness * roughness;
+            let samples = classical::prefilter_samples(level);
+            let wide = alpha >= maps.wide_alpha;
+            let (from, sources) = if wide { (&maps.dimmed, maps.source_count) } else { (&maps.radiance, 0) };
+            let lobe = Lobe { alpha, samples, sources };
+            steps.run(&self.prefilter, Input::Cube(from), (&maps.prefiltered, level), lobe);
         }
         let coarse = levels - 1 - IRRADIANCE_SOURCE.min(face).ilog2();
         steps.run(&self.irradiance, Input::Level(&maps.radiance, coarse), (&maps.irradiance, 0), Lobe::NONE);
@@ -181,10 +186,12 @@ enum Input<'a> {
 struct Lobe {
     alpha: f32,
     samples: u32,
+    /// Bright sources that are added.
+    sources: u32,
 }
 
 impl Lobe {
-    const NONE: Lobe = Lobe { alpha: 1.0, samples: 0 };
+    const NONE: Lobe = Lobe { alpha: 1.0, samples: 0, sources: 0 };
 }
 
 /// What all steps of one build share.
@@ -195,7 +202,6 @@ struct Steps<'a> {
     /// Stands in for what a step does not read; a texture must not be read and written at once.
     blank: &'a wgpu::Texture,
     bright: &'a wgpu::Buffer,
-    source_count: u32,
     levels: u32,
     scale: f32,
 }
@@ -217,7 +223,7 @@ impl Steps<'_> {
             samples: lobe.samples,
             scale: 1.0 / self.scale,
             cap,
-            sources: self.source_count,
+            sources: lobe.sources,
             pad: [0; 2],
         };
         let params = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -289,7 +295,7 @@ fn source_buffer(gpu: &Gpu, split: &classical::Split, scale: f32) -> wgpu::Buffe
     let mut data: Vec<SourceData> = split
         .sources
         .iter()
-        .map(|s| SourceData { direction: s.direction, pad0: 0.0, power: s.power / scale, pad1: 0.0 })
+        .map(|s| SourceData { direction: s.direction, pad0: 0, power: s.power / scale, pad1: 0 })
         .collect();
     data.resize(data.len().max(1), SourceData::zeroed());
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

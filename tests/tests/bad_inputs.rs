@@ -3,6 +3,8 @@
 
 #[path = "bad_inputs/containers.rs"]
 mod containers;
+#[path = "bad_inputs/environments.rs"]
+mod environments;
 #[path = "bad_inputs/files.rs"]
 mod files;
 #[path = "bad_inputs/geometry.rs"]

@@ -17,6 +17,8 @@ pub struct Budget {
     pub depth: u64,
     /// Placed primitives after the hierarchy was expanded.
     pub instances: u64,
+    /// Triangles of all placed primitives together, those of a mesh counted as often as it is placed.
+    pub placed_triangles: u64,
     /// Vertices of all meshes, each mesh counted once.
     pub vertices: u64,
     /// Triangles of all meshes, each mesh counted once.
@@ -33,6 +35,7 @@ impl Default for Budget {
             nodes: 1_000_000,
             depth: 1024,
             instances: 1_000_000,
+            placed_triangles: 200_000_000,
             vertices: 60_000_000,
             triangles: 20_000_000,
         }
@@ -47,13 +50,14 @@ pub(super) struct Meter {
     bytes: u64,
     pixels: u64,
     instances: u64,
+    placed_triangles: u64,
     vertices: u64,
     triangles: u64,
 }
 
 impl Meter {
     pub fn new(budget: Budget) -> Meter {
-        Meter { budget, bytes: 0, pixels: 0, instances: 0, vertices: 0, triangles: 0 }
+        Meter { budget, bytes: 0, pixels: 0, instances: 0, placed_triangles: 0, vertices: 0, triangles: 0 }
     }
 
     /// Bytes that may still be read.
@@ -69,8 +73,10 @@ impl Meter {
         take(&mut self.pixels, width.saturating_mul(height), self.budget.pixels, "pixels")
     }
 
-    pub fn take_instance(&mut self) -> Result<(), Cause> {
-        take(&mut self.instances, 1, self.budget.instances, "instances")
+    /// One placed primitive of so many triangles.
+    pub fn take_instance(&mut self, triangles: u64) -> Result<(), Cause> {
+        take(&mut self.instances, 1, self.budget.instances, "instances")?;
+        take(&mut self.placed_triangles, triangles, self.budget.placed_triangles, "placed triangles")
     }
 
     pub fn take_vertices(&mut self, count: u64) -> Result<(), Cause> {

@@ -44,10 +44,18 @@ fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
     refused_bytes(deep.as_bytes(), "m.gltf", &["JSON", "line 1 column"]);
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"extensions\":{{\"x\":{}}}}}", "[".repeat(200_000));
     refused_bytes(deep.as_bytes(), "m.gltf", &["JSON", "recursion limit"]);
-    refused_bytes(b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[],\"nodes\":[]}", "m.gltf", &["JSON", "duplicate field"]);
+    refused_bytes(
+        b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[],\"nodes\":[]}",
+        "m.gltf",
+        &["JSON", "duplicate field"],
+    );
     let mark = [b"\xef\xbb\xbf".as_slice(), triangle().to_string().as_bytes()].concat();
     refused_bytes(&mark, "m.gltf", &["file", "JSON with a byte order mark"]);
-    refused_bytes(b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"\\ud800\"}]}", "m.gltf", &["JSON", "surrogate"]);
+    refused_bytes(
+        b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"\\ud800\"}]}",
+        "m.gltf",
+        &["JSON", "hex escape"],
+    );
     let huge = b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"scale\":[1e999,1,1]}]}";
     refused_bytes(huge, "m.gltf", &["JSON", "number out of range"]);
     refused_bytes(b"{}", "m.gltf", &["JSON", "missing field `asset`"]);
@@ -57,7 +65,8 @@ fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
 #[test]
 fn required_extensions_are_refused_by_name_with_a_remedy_and_used_ones_noticed() {
     let mut model = triangle();
-    model["extensionsRequired"] = json!(["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"]);
+    model["extensionsRequired"] =
+        json!(["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"]);
     for (name, remedy) in [
         ("KHR_draco_mesh_compression", "without Draco compression"),
         ("EXT_meshopt_compression", "without meshopt compression"),

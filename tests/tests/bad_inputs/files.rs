@@ -140,7 +140,8 @@ fn obj_libraries_and_their_maps_stay_inside_too() {
     let folder = Folder::new("obj");
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let path = folder.model().join("m.obj");
-    for (name, words) in [("../../all.mtl", "leads out"), ("/etc/passwd", "absolute path"), ("..\\x.mtl", "leads out")] {
+    for (name, words) in [("../../all.mtl", "leads out"), ("/etc/passwd", "absolute path"), ("..\\x.mtl", "leads out")]
+    {
         fs::write(&path, format!("mtllib {name}\n{corners}f 1 2 3\n")).expect("a file");
         let notices = load_scene(&path, &ImportOptions::default()).expect("read").notices;
         let text = notices[0].to_string();
@@ -150,4 +151,13 @@ fn obj_libraries_and_their_maps_stay_inside_too() {
     fs::write(&path, format!("mtllib m.mtl\n{corners}usemtl a\nf 1 2 3\n")).expect("a file");
     let text = load_scene(&path, &ImportOptions::default()).expect("read").notices[0].to_string();
     assert!(text.contains("m.obj: material 'a': texture '../x.png' is left out: '../x.png' leads out"), "{text}");
+}
+
+#[test]
+fn a_model_that_is_not_there_is_refused_by_name() {
+    let folder = Folder::new("gone");
+    let text = load_scene(&folder.model().join("gone.glb"), &ImportOptions::default()).expect_err("gone").to_string();
+    assert!(text.starts_with("gone.glb: file: ") && text.contains("does not exist"), "{text}");
+    let text = load_scene(&folder.model(), &ImportOptions::default()).expect_err("a folder").to_string();
+    assert!(text.starts_with("model: file: ") && text.contains("is a folder"), "{text}");
 }

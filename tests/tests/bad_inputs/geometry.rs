@@ -76,23 +76,29 @@ fn indices_past_the_vertices_are_refused() {
 #[test]
 fn numbers_that_are_not_finite_are_refused_in_every_attribute_and_matrix() {
     for value in [f32::NAN, f32::INFINITY] {
-        for (name, kind, width) in
-            [("POSITION", "VEC3", 3), ("NORMAL", "VEC3", 3), ("TANGENT", "VEC4", 4), ("TEXCOORD_0", "VEC2", 2), ("COLOR_0", "VEC4", 4)]
-        {
+        for (name, kind, width) in [
+            ("POSITION", "VEC3", 3),
+            ("NORMAL", "VEC3", 3),
+            ("TANGENT", "VEC4", 4),
+            ("TEXCOORD_0", "VEC2", 2),
+            ("COLOR_0", "VEC4", 4),
+        ] {
             let mut model = triangle();
             let mut numbers = vec![1.0; 3 * width];
             numbers[width] = value;
-            let accessor = add(&mut model, &floats(&numbers), json!({ "componentType": 5126, "type": kind, "count": 3 }));
+            let accessor =
+                add(&mut model, &floats(&numbers), json!({ "componentType": 5126, "type": kind, "count": 3 }));
             model["meshes"][0]["primitives"][0]["attributes"][name] = accessor.into();
             refused(&model, &["mesh 0 'body', primitive 0, accessor 1", name, "element 1 is not finite"]);
         }
     }
     let mut model = triangle();
     model["nodes"][0]["translation"] = json!([1e39, 0, 0]);
-    refused(&model, &["node 0", "the transform is not finite"]);
+    refused(&model, &["JSON", "number out of range at line 1 column"]);
+    let large = json!([1e30, 1e30, 1e30]);
+    model["nodes"] = json!([{ "scale": large, "children": [1] }, { "scale": large, "mesh": 0 }]);
+    refused(&model, &["node 1", "passes the range of 32-bit numbers"]);
     let mut model = triangle();
-    model["nodes"][0]["matrix"] = json!([1e39, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-    refused(&model, &["node 0", "the transform is not finite"]);
     model["nodes"][0]["matrix"] = json!([1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     refused(&model, &["node 0", "not affine"]);
     let mut model = triangle();
@@ -110,11 +116,13 @@ fn node_graphs_with_cycles_diamonds_or_endless_depth_are_refused_quickly() {
     refused(&model, &["node 0", "is reached twice"]);
 
     // Each of 41 nodes names the next one twice: 2^40 paths.
-    let diamond: Vec<Value> = (0..41).map(|i| if i < 40 { json!({ "children": [i + 1, i + 1] }) } else { json!({ "mesh": 0 }) }).collect();
+    let diamond: Vec<Value> =
+        (0..41).map(|i| if i < 40 { json!({ "children": [i + 1, i + 1] }) } else { json!({ "mesh": 0 }) }).collect();
     model["nodes"] = diamond.into();
     refused(&model, &["node", "is reached twice"]);
 
-    let chain: Vec<Value> = (0..200_000).map(|i| if i < 199_999 { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) }).collect();
+    let chain: Vec<Value> =
+        (0..200_000).map(|i| if i < 199_999 { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) }).collect();
     model["nodes"] = chain.into();
     refused(&model, &["node 1024", "asks for 1025 levels of nodes; the limit is 1024"]);
 
@@ -137,7 +145,10 @@ fn one_large_mesh_under_many_primitives_meets_the_budget() {
     refused(&model, &["scene", "there are no triangles to show (points and lines are not shown)"]);
     let primitive = json!({ "attributes": { "POSITION": 0 }, "indices": 0 });
     model["meshes"][0]["primitives"] = vec![primitive; 4].into();
-    refused(&model, &["mesh 0 'body', primitive 3, accessor 0 (POSITION)", "asks for 80000000 vertices; the limit is 60000000"]);
+    refused(
+        &model,
+        &["mesh 0 'body', primitive 3, accessor 0 (POSITION)", "asks for 80000000 vertices; the limit is 60000000"],
+    );
 }
 
 #[test]
@@ -145,8 +156,16 @@ fn degenerate_geometry_is_shown_without_nan_and_noticed() {
     let mut model = triangle();
     let flat = add(&mut model, &floats(&[1.0; 9]), json!({ "componentType": 5126, "type": "VEC3", "count": 3 }));
     let zero = add(&mut model, &floats(&[0.0; 9]), json!({ "componentType": 5126, "type": "VEC3", "count": 3 }));
-    let along = add(&mut model, &floats(&[0., 0., 1., 1., 0., 0., 1., 1., 0., 0., 1., 1.]), json!({ "componentType": 5126, "type": "VEC4", "count": 3 }));
-    let normal = add(&mut model, &floats(&[0., 0., 1., 0., 0., 1., 0., 0., 1.]), json!({ "componentType": 5126, "type": "VEC3", "count": 3 }));
+    let along = add(
+        &mut model,
+        &floats(&[0., 0., 1., 1., 0., 0., 1., 1., 0., 0., 1., 1.]),
+        json!({ "componentType": 5126, "type": "VEC4", "count": 3 }),
+    );
+    let normal = add(
+        &mut model,
+        &floats(&[0., 0., 1., 0., 0., 1., 0., 0., 1.]),
+        json!({ "componentType": 5126, "type": "VEC3", "count": 3 }),
+    );
     model["meshes"][0]["primitives"] = json!([
         { "attributes": { "POSITION": 0, "NORMAL": zero } },
         { "attributes": { "POSITION": flat } },
@@ -174,10 +193,12 @@ fn extents_that_f32_cannot_hold_are_refused_and_odd_ones_noticed() {
         model
     };
     refused(&scaled(1e13, 0.0), &["scene", "reaches", "m is the limit"]);
-    refused(&scaled(3e38, 3e38), &["scene", "reaches"]);
-    for (scale, offset, words) in
-        [(1e10, 0.0, "is its unit the metre?"), (1e-12, 0.0, "is its unit the metre?"), (1.0, 1e7, "lies 10000000 m from the origin")]
-    {
+    refused(&scaled(1.0, 3e38), &["scene", "reaches"]);
+    for (scale, offset, words) in [
+        (1e10, 0.0, "is its unit the metre?"),
+        (1e-12, 0.0, "is its unit the metre?"),
+        (1.0, 1e7, "lies 10000000 m from the origin"),
+    ] {
         let notices = notices(scaled(scale, offset).to_string().as_bytes(), "m.gltf");
         assert!(notices.iter().any(|n| n.starts_with("m.gltf: scene: ") && n.contains(words)), "{notices:?}");
     }
@@ -232,9 +253,7 @@ fn odd_but_readable_obj_text_is_read_in_bounded_time() {
 
 #[test]
 fn material_values_out_of_range_are_clamped_with_a_notice() {
-    for (field, value) in
-        [("roughnessFactor", 2.0), ("roughnessFactor", -1.0), ("metallicFactor", 1.5), ("roughnessFactor", 1e39)]
-    {
+    for (field, value) in [("roughnessFactor", 2.0), ("roughnessFactor", -1.0), ("metallicFactor", 1.5)] {
         let mut model = triangle();
         model["materials"] = json!([{ "name": "skin", "pbrMetallicRoughness": { field: value } }]);
         model["meshes"][0]["primitives"][0]["material"] = 0.into();
@@ -242,7 +261,8 @@ fn material_values_out_of_range_are_clamped_with_a_notice() {
         assert!(notices[0].starts_with(&format!("m.gltf: material 0 'skin': {field} was ")), "{notices:?}");
     }
     let mut model = triangle();
-    model["materials"] = json!([{ "emissiveFactor": [1e39, -1, 0], "extensions": { "KHR_materials_ior": { "ior": -2 } } }]);
+    model["materials"] =
+        json!([{ "emissiveFactor": [1, -1, 0], "extensions": { "KHR_materials_ior": { "ior": -2 } } }]);
     model["meshes"][0]["primitives"][0]["material"] = 0.into();
     let notices = notices(model.to_string().as_bytes(), "m.gltf").join("\n");
     assert!(notices.contains("emissiveFactor was") && notices.contains("ior was -2; 1 is used"), "{notices}");
@@ -264,7 +284,8 @@ fn textures_that_lead_nowhere_are_left_out_with_a_notice() {
     bomb.extend(b"\x00\x00\x00\x00IEND\xae\x42\x60\x82");
     let bomb = percent(&bomb).replace("application/octet-stream", "image/png");
     model["images"] = json!([{ "uri": bomb }, { "uri": "data:image/ktx2,%abKTX%2020%bb" }, { "uri": "../up.png" }, {}]);
-    model["textures"] = json!([{ "source": 0 }, { "source": 1 }, { "source": 2 }, { "source": 3 }, { "source": 9, "sampler": 9 }]);
+    model["textures"] =
+        json!([{ "source": 0 }, { "source": 1 }, { "source": 2 }, { "source": 3 }, { "source": 9, "sampler": 9 }]);
     model["samplers"] = json!([{ "minFilter": 99 }]);
     model["materials"] = json!([{
         "pbrMetallicRoughness": { "baseColorTexture": { "index": 4, "texCoord": 7 } }, "normalTexture": { "index": 99 },
@@ -315,5 +336,43 @@ fn a_texture_that_asks_for_odd_coordinates_or_samplers_is_shown_with_a_notice() 
         "mesh 0 'body', primitive 0: a texture asks for TEXCOORD_0, which the primitive lacks",
     ] {
         assert!(notices.contains(words), "{notices}\nlacks {words}");
+    }
+}
+
+#[test]
+fn a_picture_with_a_wrong_checksum_or_cut_short_is_left_out_with_a_notice() {
+    let sound = b"\x89PNG\r\n\x1a\n\x00\x00\x00\x0dIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\
+        \x00\x00\x00\x0aIDAT\x78\x9c\x63\x60\x00\x00\x00\x02\x00\x01\x48\xaf\xa4\x71\x00\x00\x00\x00IEND\xae\x42\x60\x82";
+    let mut wrong = sound.to_vec();
+    wrong[30] ^= 1;
+    for bytes in [wrong.as_slice(), &sound[..40], b"\xff\xd8\xff\xe0\x00\x10JFIF"] {
+        let mut model = triangle();
+        model["images"] = json!([{ "uri": percent(bytes) }]);
+        model["textures"] = json!([{ "source": 0 }]);
+        let notices = notices(model.to_string().as_bytes(), "m.gltf");
+        assert!(notices[0].starts_with("m.gltf: image 0: the texture is left out: "), "{notices:?}");
+    }
+}
+
+#[test]
+fn a_mesh_placed_too_often_is_refused() {
+    let mut model = triangle();
+    model["nodes"] = vec![json!({ "mesh": 0 }); 50].into();
+    model["scenes"] = json!([{ "nodes": (0..50).collect::<Vec<_>>() }]);
+    for (budget, words) in [
+        (
+            burnish_core::import::Budget { instances: 49, ..Default::default() },
+            "asks for 50 instances; the limit is 49",
+        ),
+        (burnish_core::import::Budget { placed_triangles: 49, ..Default::default() }, "asks for 50 placed triangles"),
+        (burnish_core::import::Budget { nodes: 49, ..Default::default() }, "asks for 50 nodes"),
+        (burnish_core::import::Budget { json_bytes: 99, ..Default::default() }, "bytes of JSON; the limit is 99"),
+    ] {
+        let options = burnish_core::import::ImportOptions { budget, ..Default::default() };
+        let bytes = model.to_string();
+        let error =
+            burnish_core::import::scene_from_bytes(bytes.as_bytes(), "m.gltf", &crate::sources::Nothing, &options);
+        let text = error.expect_err("over the budget").to_string();
+        assert!(text.starts_with("m.gltf: ") && text.contains(words), "{text}");
     }
 }

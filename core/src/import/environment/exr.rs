@@ -14,6 +14,9 @@ use crate::import::report::Report;
 use crate::import::resolve::quoted;
 use crate::import::{Budget, Cause};
 
+/// Channels in one layer; film pipelines write some hundreds.
+const MOST_CHANNELS: usize = 1024;
+
 /// Channels of one layer that make a picture, by index in the header's list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Choice {
@@ -88,9 +91,15 @@ fn check_headers(
         }
         // The table of chunk offsets alone must fit into the file.
         if (header.chunk_count as u64).saturating_mul(8) > file_bytes {
-            return Err(Cause::Syntax(format!("states {} chunks, for which the file is too short", header.chunk_count)));
+            return Err(Cause::Syntax(format!(
+                "states {} chunks, for which the file is too short",
+                header.chunk_count
+            )));
         }
         let channels = header.channels.list.len() as u64;
+        if channels > MOST_CHANNELS as u64 {
+            return Err(Cause::Limit { what: "channels", asked: channels, limit: MOST_CHANNELS as u64 });
+        }
         samples = samples.saturating_add((width * height).saturating_mul(channels));
     }
     // Four channels of the largest picture.
@@ -126,9 +135,8 @@ fn choose(names: &[String]) -> Option<(Choice, String)> {
     prefixes.extend(names.iter().filter_map(|n| n.rfind('.').map(|dot| &n[..=dot])));
     // A file may have a thousand channels; each prefix is judged once.
     prefixes.dedup();
-    let rgb = prefixes.iter().find_map(|p| {
-        Some((Choice::Rgb([find(p, "R")?, find(p, "G")?, find(p, "B")?]), p.to_string()))
-    });
+    let rgb =
+        prefixes.iter().find_map(|p| Some((Choice::Rgb([find(p, "R")?, find(p, "G")?, find(p, "B")?]), p.to_string())));
     rgb.or_else(|| {
         prefixes.iter().find_map(|p| {
             let chroma = find(p, "RY").is_some() || find(p, "BY").is_some();

@@ -127,11 +127,7 @@ fn parse_primaries(value: &str) -> Option<Primaries> {
 }
 
 /// Reads one scanline to the end of `out`; returns what follows it.
-fn scanline<'a>(
-    bytes: &'a [u8],
-    length: usize,
-    out: &mut Vec<[u8; 4]>,
-) -> Result<&'a [u8], &'static str> {
+fn scanline<'a>(bytes: &'a [u8], length: usize, out: &mut Vec<[u8; 4]>) -> Result<&'a [u8], &'static str> {
     match bytes {
         // The newer form: a mark, then each of the four channels in runs of its own.
         [2, 2, high, low, rest @ ..] if (8..0x8000).contains(&length) && *high < 128 => {
@@ -183,7 +179,9 @@ fn texels<'a>(mut bytes: &'a [u8], length: usize, out: &mut Vec<[u8; 4]>) -> Res
             continue;
         }
         let count = usize::from(texel[3]).checked_shl(shift).filter(|_| shift < 32).unwrap_or(usize::MAX);
-        let Some(last) = out.last().copied().filter(|_| out.len() > start) else { return Err("a run before any texel") };
+        let Some(last) = out.last().copied().filter(|_| out.len() > start) else {
+            return Err("a run before any texel");
+        };
         if count > end - out.len() {
             return Err("a run passes the end");
         }

@@ -84,7 +84,10 @@ fn faulty_hdr_files_are_refused_in_words() {
         (hdr("", "-Y 1 +X 8", &[2, 2, 0, 9]), "states another length"),
         (hdr("", "-Y 1 +X 8", &[2, 2, 0, 8, 0, 0, 0]), "a run is empty or passes the end"),
         (hdr("", "-Y 1 +X 2", &[1, 1, 1, 2]), "a run before any texel"),
-        (hdr("", "-Y 1 +X 9", &[9, 9, 9, 9, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1]), "passes the end"),
+        (
+            hdr("", "-Y 1 +X 9", &[9, 9, 9, 9, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 1]),
+            "passes the end",
+        ),
         (hdr("FORMAT=32-bit_rle_xyze", "-Y 2 +X 2", &[]), "XYZE"),
         (hdr("EXPOSURE=0", "-Y 2 +X 2", &[]), "EXPOSURE"),
         (hdr("", "-Y 99999999999 +X 2", &[]), "is not a resolution"),
@@ -136,18 +139,8 @@ fn plain() -> e::Encoding {
 #[test]
 fn every_compression_of_exr_decodes() {
     use e::Compression as C;
-    let list = [
-        C::Uncompressed,
-        C::RLE,
-        C::ZIP1,
-        C::ZIP16,
-        C::PIZ,
-        C::PXR24,
-        C::B44,
-        C::B44A,
-        C::DWAA(None),
-        C::DWAB(None),
-    ];
+    let list =
+        [C::Uncompressed, C::RLE, C::ZIP1, C::ZIP16, C::PIZ, C::PXR24, C::B44, C::B44A, C::DWAA(None), C::DWAB(None)];
     for compression in list {
         for tiled in [false, true] {
             let blocks = if tiled { e::Blocks::Tiles(e::Vec2(2, 2)) } else { e::Blocks::ScanLines };
@@ -225,4 +218,40 @@ fn bad_values_are_repaired_and_counted() {
     }
     let (_, notices) = read(&exr(vec![("Y", float(0.0))], plain()));
     assert!(notices.iter().any(|n| n.contains("black everywhere")), "{notices:?}");
+}
+
+/// Changes a few bytes of each file many times, from a fixed seed.
+#[test]
+fn mutated_exr_files_never_panic() {
+    let mut state = 6_u64;
+    // SplitMix64 (Steele, Lea and Flood 2014).
+    let mut random = |limit: usize| {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % limit.max(1) as u64) as usize
+    };
+    let budget = Budget { pixels: 1 << 16, ..Budget::default() };
+    use e::Compression as C;
+    for compression in [C::Uncompressed, C::RLE, C::ZIP16, C::PIZ, C::PXR24, C::B44, C::DWAA(None)] {
+        for blocks in [e::Blocks::ScanLines, e::Blocks::Tiles(e::Vec2(2, 2))] {
+            let encoding = e::Encoding { compression, blocks, line_order: e::LineOrder::Increasing };
+            let source = exr(vec![("R", half(0.5)), ("G", float(1.0)), ("B", half(2.0))], encoding);
+            for round in 0..300 {
+                let mut bytes = source.clone();
+                for _ in 0..=random(3) {
+                    let at = random(bytes.len());
+                    match random(8) {
+                        0 => bytes.truncate(at),
+                        1 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0xFF),
+                        2 => bytes.iter_mut().skip(at).take(8).for_each(|b| *b = 0x7F),
+                        _ => bytes.iter_mut().skip(at).take(1).for_each(|b| *b = random(256) as u8),
+                    }
+                }
+                let start = std::time::Instant::now();
+                let _ = environment_from_bytes(&bytes, "sky.exr", &budget);
+                assert!(start.elapsed().as_secs() < 5, "{compression:?}, round {round}: {:?}", start.elapsed());
+            }
+        }
+    }
 }

@@ -146,7 +146,9 @@ impl Data<'_> {
         let bytes = self.view(view)?;
         let stride = json.byte_stride.map_or(size, |s| s.0);
         if stride < size {
-            return Err(Cause::Invalid(format!("buffer view {view}: a stride of {stride} for elements of {size} bytes")));
+            return Err(Cause::Invalid(format!(
+                "buffer view {view}: a stride of {stride} for elements of {size} bytes"
+            )));
         }
         let end = (count as u64 - 1)
             .checked_mul(stride as u64)
@@ -169,9 +171,8 @@ impl Data<'_> {
             return Err(Cause::Invalid(format!("buffer view {view}: buffer {buffer} could not be read")));
         };
         let (offset, length) = (json.byte_offset.map_or(0, |o| o.0), json.byte_length.0);
-        let range = offset.checked_add(length).and_then(|end| {
-            Some(usize::try_from(offset).ok()?..usize::try_from(end).ok()?)
-        });
+        let range =
+            offset.checked_add(length).and_then(|end| Some(usize::try_from(offset).ok()?..usize::try_from(end).ok()?));
         range.and_then(|range| data.get(range)).ok_or_else(|| {
             let have = data.len();
             let text = format!("{length} bytes from byte {offset} pass the end of buffer {buffer} ({have} bytes)");

@@ -123,11 +123,8 @@ impl Reader<'_> {
         if let Some(occlusion) = &json.occlusion_texture {
             let others = occlusion.extensions.as_ref().map(|e| &e.others);
             let transform = self.transform(others);
-            let asked = Asked {
-                texture: occlusion.index.value(),
-                uv_set: occlusion.tex_coord,
-                transform: transform.as_ref(),
-            };
+            let asked =
+                Asked { texture: occlusion.index.value(), uv_set: occlusion.tex_coord, transform: transform.as_ref() };
             material.occlusion_texture = self.images.texture(self.root, &asked, self.at, "occlusion", self.report);
             material.occlusion_strength = self.unit("occlusion strength", occlusion.strength.0);
         }

@@ -9,9 +9,9 @@ mod material;
 mod nodes;
 mod primitive;
 mod punctual;
-mod texture;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 use std::borrow::Cow;
 

@@ -56,11 +56,7 @@ pub(super) fn flatten(
         let world_from_local = world_from_parent * parent_from_local;
         place(data, node, &at, world_from_local, &mut meshes, &mut scene, meter, report)?;
         for child in node.children.iter().flatten().rev() {
-            waiting.push(Waiting {
-                node: child.value(),
-                world_from_parent: world_from_local,
-                depth: depth + 1,
-            });
+            waiting.push(Waiting { node: child.value(), world_from_parent: world_from_local, depth: depth + 1 });
         }
     }
     Some(scene)
@@ -155,12 +151,17 @@ fn place(
     }
     let Some(mesh) = node.mesh else { return Some(()) };
     let transform = affine(world_from_local);
+    if !transform.is_finite() {
+        report.fault(at, Cause::Invalid("the transform to world space passes the range of 32-bit numbers".into()));
+        return Some(());
+    }
     if flat(world_from_local) || !transform.inverse().is_finite() {
         report.notice(at, "meshes whose transform cannot be inverted (a scale of 0) are not shown");
         return Some(());
     }
     for &(mesh, material) in meshes.primitives(data, mesh.value(), at, scene, meter, report) {
-        let taken = meter.take_instance();
+        let triangles = scene.meshes[mesh].indices.len() / 3;
+        let taken = meter.take_instance(triangles as u64);
         report.keep(at, taken)?;
         scene.instances.push(Instance { name: name(), mesh, material, world_from_local: transform });
     }

@@ -80,7 +80,9 @@ fn a_triangle_without_anything_is_flat_and_of_white_metal() {
 #[test]
 fn strips_and_fans_keep_all_triangles_facing_one_way() {
     // A strip of four corners in zigzag and a fan around a corner, both of a quad that faces +z.
-    for (mode, corners) in [(5, [[0., 0.], [1., 0.], [0., 1.], [1., 1.]]), (6, [[0., 0.], [1., 0.], [1., 1.], [0., 1.]])] {
+    for (mode, corners) in
+        [(5, [[0., 0.], [1., 0.], [0., 1.], [1., 1.]]), (6, [[0., 0.], [1., 0.], [1., 1.], [0., 1.]])]
+    {
         let mut model = triangle();
         let positions: Vec<f32> = corners.iter().flat_map(|[x, y]| [*x, *y, 0.0]).collect();
         let accessor = json!({ "componentType": 5126, "type": "VEC3", "count": 4 });
@@ -119,7 +121,9 @@ fn interleaved_and_normalised_attributes_are_read() {
 
 #[test]
 fn every_component_type_of_indices_and_signed_normals_is_read() {
-    for (kind, bytes) in [(5121, vec![2_u8, 1, 0]), (5123, vec![2, 0, 1, 0, 0, 0]), (5125, vec![2, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0])] {
+    for (kind, bytes) in
+        [(5121, vec![2_u8, 1, 0]), (5123, vec![2, 0, 1, 0, 0, 0]), (5125, vec![2, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0])]
+    {
         let mut model = triangle();
         let indices = add(&mut model, &bytes, json!({ "componentType": kind, "type": "SCALAR", "count": 3 }));
         model["meshes"][0]["primitives"][0]["indices"] = indices.into();
@@ -136,7 +140,8 @@ fn every_component_type_of_indices_and_signed_normals_is_read() {
 fn a_sparse_part_replaces_elements_of_a_view_or_of_zeros() {
     for with_view in [true, false] {
         let mut model = triangle();
-        let place = add(&mut model, &1_u16.to_le_bytes(), json!({ "componentType": 5123, "type": "SCALAR", "count": 1 }));
+        let place =
+            add(&mut model, &1_u16.to_le_bytes(), json!({ "componentType": 5123, "type": "SCALAR", "count": 1 }));
         add(&mut model, &bytes_of(&[5., 6., 7.]), json!({ "componentType": 5126, "type": "VEC3", "count": 1 }));
         model["accessors"][0]["sparse"] = json!({
             "count": 1,
@@ -172,9 +177,8 @@ fn the_scene_is_the_chosen_one_then_the_first_then_all_roots() {
     let mut model = triangle();
     model["nodes"] = json!([{ "mesh": 0, "name": "a" }, { "children": [2] }, { "mesh": 0, "name": "b" }]);
     model["scenes"] = json!([{ "nodes": [0] }, { "nodes": [1] }]);
-    let names = |model: &Value| -> Vec<String> {
-        read(model).unwrap().scene.instances.into_iter().map(|i| i.name).collect()
-    };
+    let names =
+        |model: &Value| -> Vec<String> { read(model).unwrap().scene.instances.into_iter().map(|i| i.name).collect() };
     model["scene"] = 1.into();
     assert_eq!(names(&model), ["b"]);
     model.as_object_mut().unwrap().remove("scene");
@@ -367,7 +371,8 @@ fn spot_angles_are_brought_into_order() {
 #[test]
 fn all_faults_of_a_model_are_listed_at_once() {
     let mut model = triangle();
-    let positions = add(&mut model, &bytes_of(&[f32::NAN; 9]), json!({ "componentType": 5126, "type": "VEC3", "count": 3 }));
+    let positions =
+        add(&mut model, &bytes_of(&[f32::NAN; 9]), json!({ "componentType": 5126, "type": "VEC3", "count": 3 }));
     let indices = add(&mut model, &[0, 1, 9], json!({ "componentType": 5121, "type": "SCALAR", "count": 3 }));
     let primitives = model["meshes"][0]["primitives"].as_array_mut().unwrap();
     primitives.push(json!({ "attributes": { "POSITION": positions } }));

@@ -36,12 +36,7 @@ pub(super) struct Images {
 }
 
 /// Decodes every image that a texture uses. One that cannot be read is a notice: the picture still comes out.
-pub(super) fn read_images(
-    data: &Data<'_>,
-    resolver: &dyn Resolver,
-    meter: &mut Meter,
-    report: &mut Report,
-) -> Images {
+pub(super) fn read_images(data: &Data<'_>, resolver: &dyn Resolver, meter: &mut Meter, report: &mut Report) -> Images {
     let root = data.root;
     let mut used = vec![false; root.images.len()];
     for texture in &root.textures {
@@ -85,7 +80,14 @@ pub(super) struct Asked<'a> {
 
 impl Images {
     /// What a material gets for a texture that it asks for; `None` when there is none to show. `what` names the slot.
-    pub fn texture(&self, root: &Root, asked: &Asked<'_>, at: &str, what: &str, report: &mut Report) -> Option<TextureRef> {
+    pub fn texture(
+        &self,
+        root: &Root,
+        asked: &Asked<'_>,
+        at: &str,
+        what: &str,
+        report: &mut Report,
+    ) -> Option<TextureRef> {
         let at = format!("{at}, {what} texture");
         let texture = match pick(&root.textures, asked.texture, "texture") {
             Ok(texture) => texture,
@@ -97,7 +99,11 @@ impl Images {
         let source = texture.source.value();
         let Some(place) = self.places.get(source) else {
             // The crate stores the greatest index for a texture without a source.
-            let why = if source == u32::MAX as usize { "it names no PNG or JPEG image".into() } else { format!("image {source} does not exist") };
+            let why = if source == u32::MAX as usize {
+                "it names no PNG or JPEG image".into()
+            } else {
+                format!("image {source} does not exist")
+            };
             report.notice(at, format!("the texture is left out: {why}"));
             return None;
         };

@@ -114,12 +114,7 @@ impl Seen {
     }
 
     /// `f p p/t p/t/n p//n ...`, three corners or more, counted from 1 or backwards from -1.
-    fn face<'a>(
-        &mut self,
-        words: impl Iterator<Item = &'a str>,
-        line: usize,
-        meter: &mut Meter,
-    ) -> Result<(), Cause> {
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>, line: usize, meter: &mut Meter) -> Result<(), Cause> {
         let mut corners = 0_u64;
         for word in words {
             corners += 1;

@@ -1,6 +1,8 @@
 use glam::{Vec2, Vec3};
 
-use crate::import::{ImportError, ImportOptions, Imported, NormalsWhenAbsent, ResolveError, Resolver, scene_from_bytes};
+use crate::import::{
+    ImportError, ImportOptions, Imported, NormalsWhenAbsent, ResolveError, Resolver, scene_from_bytes,
+};
 
 /// Files in memory.
 pub(crate) struct Files(pub Vec<(&'static str, Vec<u8>)>);
@@ -61,7 +63,8 @@ fn a_box_without_normals_has_sharp_edges_unless_smoothing_is_asked_for() {
 
 #[test]
 fn faults_name_their_lines_and_are_listed_together() {
-    let text = refusal("v 0 0 0\nv nan inf 0\nv 1e39 0 0\nv 1,5 0 0\nf 0 1 1\nf 1 1\nf 1 -9 1\nf 1 2 99999999999999999999\n");
+    let text =
+        refusal("v 0 0 0\nv nan inf 0\nv 1e39 0 0\nv 1,5 0 0\nf 0 1 1\nf 1 1\nf 1 -9 1\nf 1 2 99999999999999999999\n");
     for words in [
         "part.obj: line 2 'v nan inf 0': 'nan' is not a finite",
         "line 3 'v 1e39 0 0': '1e39' is not a finite 32-bit number",

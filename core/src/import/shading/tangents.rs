@@ -13,7 +13,11 @@ use crate::scene::Mesh;
 /// where x takes over.
 pub(super) fn around_y(normal: Vec3) -> Vec4 {
     let around = Vec3::Y.cross(normal);
-    let tangent = if around.length_squared() > 1e-6 { around.normalize() } else { Vec3::X.reject_from_normalized(normal).normalize() };
+    let tangent = if around.length_squared() > 1e-6 {
+        around.normalize()
+    } else {
+        Vec3::X.reject_from_normalized(normal).normalize()
+    };
     tangent.extend(1.0)
 }
 

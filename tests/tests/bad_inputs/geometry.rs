@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::sources::{notices, percent, read, refused, refused_bytes, triangle};
+use crate::sources::{PNG, notices, percent, read, refused, refused_bytes, triangle};
 
 /// Adds a buffer, a view and an accessor over `bytes`.
 fn add(model: &mut Value, bytes: &[u8], mut accessor: Value) -> usize {
@@ -318,14 +318,12 @@ fn checksum(bytes: &[u8]) -> u32 {
 #[test]
 fn a_texture_that_asks_for_odd_coordinates_or_samplers_is_shown_with_a_notice() {
     let mut model = triangle();
-    // One black pixel.
-    let png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\x0dIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\
-        \x00\x00\x00\x0aIDAT\x78\x9c\x63\x60\x00\x00\x00\x02\x00\x01\x48\xaf\xa4\x71\x00\x00\x00\x00IEND\xae\x42\x60\x82";
-    model["images"] = json!([{ "uri": percent(png) }]);
+    model["images"] = json!([{ "uri": percent(PNG) }]);
     model["samplers"] = json!([{ "wrapS": 99, "minFilter": 99 }]);
     model["textures"] = json!([{ "source": 0, "sampler": 0 }, { "source": 0, "sampler": 5 }]);
     model["materials"] = json!([{
-        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 7 } }, "emissiveTexture": { "index": 1 },
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 7 } },
+        "emissiveTexture": { "index": 1 },
     }]);
     model["meshes"][0]["primitives"][0]["material"] = 0.into();
     let notices = notices(model.to_string().as_bytes(), "m.gltf").join("\n");
@@ -341,11 +339,9 @@ fn a_texture_that_asks_for_odd_coordinates_or_samplers_is_shown_with_a_notice() 
 
 #[test]
 fn a_picture_with_a_wrong_checksum_or_cut_short_is_left_out_with_a_notice() {
-    let sound = b"\x89PNG\r\n\x1a\n\x00\x00\x00\x0dIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\
-        \x00\x00\x00\x0aIDAT\x78\x9c\x63\x60\x00\x00\x00\x02\x00\x01\x48\xaf\xa4\x71\x00\x00\x00\x00IEND\xae\x42\x60\x82";
-    let mut wrong = sound.to_vec();
+    let mut wrong = PNG.to_vec();
     wrong[30] ^= 1;
-    for bytes in [wrong.as_slice(), &sound[..40], b"\xff\xd8\xff\xe0\x00\x10JFIF"] {
+    for bytes in [wrong.as_slice(), &PNG[..40], b"\xff\xd8\xff\xe0\x00\x10JFIF"] {
         let mut model = triangle();
         model["images"] = json!([{ "uri": percent(bytes) }]);
         model["textures"] = json!([{ "source": 0 }]);

@@ -176,8 +176,8 @@ pub(super) fn affine(a: DAffine3) -> Affine3A {
 fn flat(a: DAffine3) -> bool {
     let m: DMat3 = a.matrix3;
     let box_volume = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    // Written so that NaN counts as flat.
-    !(m.determinant().abs() > FLAT * box_volume)
+    let volume = m.determinant().abs();
+    volume.is_nan() || volume <= FLAT * box_volume
 }
 
 /// Primitives that were read: each mesh once, however many nodes show it.

@@ -36,6 +36,9 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
+/// Extensions that say nothing about the picture: how triangles were cut from polygons, and who made the file.
+const WITHOUT_LOOK: &[&str] = &["FB_ngon_encoding", "KHR_xmp", "KHR_xmp_json_ld"];
+
 /// Media types of inline buffers.
 const BUFFER_MEDIA: &[&str] = &["application/octet-stream", "application/gltf-buffer"];
 
@@ -72,6 +75,11 @@ fn parse(json: &[u8], meter: &Meter) -> Result<Root, Cause> {
     serde_json::from_slice(json).map_err(|e| Cause::Syntax(e.to_string()))
 }
 
+/// True for extensions that may be required without harm.
+fn known(extension: &str) -> bool {
+    SUPPORTED.contains(&extension) || WITHOUT_LOOK.contains(&extension)
+}
+
 /// Refuses files that cannot be shown as meant; `None` when it did.
 fn check_asset(root: &Root, meter: &Meter, report: &mut Report) -> Option<()> {
     let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
@@ -81,7 +89,7 @@ fn check_asset(root: &Root, meter: &Meter, report: &mut Report) -> Option<()> {
         sound = false;
     }
     for name in &root.extensions_required {
-        if !SUPPORTED.contains(&name.as_str()) {
+        if !known(name) {
             report.fault("extensionsRequired", Cause::Extension(name.chars().take(80).collect()));
             sound = false;
         }
@@ -93,7 +101,7 @@ fn check_asset(root: &Root, meter: &Meter, report: &mut Report) -> Option<()> {
     }
     for name in &root.extensions_used {
         match name.as_str() {
-            name if SUPPORTED.contains(&name) || root.extensions_required.iter().any(|r| r == name) => {}
+            name if known(name) || root.extensions_required.iter().any(|r| r == name) => {}
             "KHR_materials_pbrSpecularGlossiness" => report.notice(
                 "extensionsUsed",
                 "KHR_materials_pbrSpecularGlossiness is not supported; the metallic-roughness values are shown instead",

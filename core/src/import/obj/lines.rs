@@ -35,14 +35,16 @@ pub(super) fn check(source: &str, meter: &mut Meter, report: &mut Report) -> Opt
     let mut text = String::with_capacity(source.len());
     let mut sound = true;
     for (number, line) in joined(source) {
-        let kept = seen.statement(line.trim(), number, meter, report);
-        match report.keep(format!("line {number} {}", quoted(line.trim())), kept) {
-            Some(Some(statement)) => {
+        match seen.statement(line.trim(), number, meter, report) {
+            Ok(Some(statement)) => {
                 text.push_str(&statement);
                 text.push('\n');
             }
-            Some(None) => {}
-            None => sound = false,
+            Ok(None) => {}
+            Err(cause) => {
+                report.fault(format!("line {number} {}", quoted(line.trim())), cause);
+                sound = false;
+            }
         }
     }
     for ((index, line), (what, count)) in seen.greatest.into_iter().zip(LISTS.into_iter().zip(seen.counts())) {

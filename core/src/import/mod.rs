@@ -10,6 +10,7 @@ mod data_uri;
 mod environment;
 mod folder;
 mod gltf;
+mod guard;
 mod numbers;
 mod obj;
 mod picture;

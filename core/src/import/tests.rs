@@ -1,6 +1,9 @@
 use glam::Vec3;
 
 use super::{Cause, ImportError, ImportOptions, NormalsWhenAbsent, ResolveError, Resolver, scene_from_bytes, sniff};
+use crate::import::Budget;
+use crate::import::budget::Meter;
+use crate::import::picture::Encoded;
 use crate::import::report::Report;
 
 struct Nothing;
@@ -8,6 +11,47 @@ struct Nothing;
 impl Resolver for Nothing {
     fn read(&self, uri: &str, _budget: u64) -> Result<Vec<u8>, ResolveError> {
         Err(ResolveError::Missing { uri: uri.into() })
+    }
+}
+
+/// Runs `read` over changed copies of a file, from a fixed seed; it must come back, and within seconds.
+pub(super) fn survive(source: &[u8], seed: u64, rounds: usize, read: impl Fn(&[u8])) {
+    let mut state = seed;
+    // SplitMix64 (Steele, Lea and Flood 2014).
+    let mut random = |limit: usize| {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % limit.max(1) as u64) as usize
+    };
+    for round in 0..rounds {
+        let mut bytes = source.to_vec();
+        for _ in 0..=random(3) {
+            let at = random(bytes.len());
+            match random(8) {
+                0 => bytes.truncate(at),
+                1 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0xFF),
+                2 => bytes.iter_mut().skip(at).take(8).for_each(|b| *b = 0x7F),
+                _ => bytes.iter_mut().skip(at).take(1).for_each(|b| *b = random(256) as u8),
+            }
+        }
+        let start = std::time::Instant::now();
+        read(&bytes);
+        assert!(start.elapsed().as_secs() < 5, "seed {seed}, round {round}: {:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn mutated_pictures_never_panic() {
+    let picture = image::RgbImage::from_fn(24, 16, |x, y| image::Rgb([x as u8 * 9, y as u8 * 15, 77]));
+    for (seed, format) in [(1, image::ImageFormat::Png), (2, image::ImageFormat::Jpeg)] {
+        let mut source = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut source, format).unwrap();
+        survive(source.get_ref(), seed, 1000, |bytes| {
+            let budget = Budget { pixels: 1 << 16, ..Budget::default() };
+            let opened = Encoded::open(bytes.to_vec(), "image 0".into(), &mut Meter::new(budget));
+            let _ = opened.and_then(|picture| picture.decode());
+        });
     }
 }
 

@@ -39,6 +39,14 @@ fn chunks_that_are_too_long_twice_there_or_not_json_are_refused() {
 }
 
 #[test]
+fn chunks_of_other_kinds_zeros_after_the_json_and_bytes_after_the_end_are_no_harm() {
+    let json = [triangle().to_string().as_bytes(), &[0; 3]].concat();
+    let mut file = glb(&json, &[(b"XTRA", &[1, 2, 3])]);
+    file.extend([9; 5]);
+    assert_eq!(notices(&file, "m.glb"), [""; 0]);
+}
+
+#[test]
 fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}]}}", "[".repeat(200_000));
     refused_bytes(deep.as_bytes(), "m.gltf", &["JSON", "line 1 column"]);

@@ -10,6 +10,7 @@ use glam::{DVec2, Vec3};
 
 use super::primaries::Primaries;
 use super::{Raw, check_size};
+use crate::import::guard::guarded;
 use crate::import::report::Report;
 use crate::import::resolve::quoted;
 use crate::import::{Budget, Cause};
@@ -26,21 +27,18 @@ enum Choice {
 
 pub(super) fn read(bytes: &[u8], budget: &Budget, report: &mut Report) -> Result<Raw, Cause> {
     check_flags(bytes)?;
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(syntax)?;
+    let meta = guarded(|| MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(syntax))?;
     let (layer, choice) = check_headers(&meta.headers, bytes.len() as u64, budget, report)?;
     let header = &meta.headers[layer];
     let primaries = header.shared_attributes.chromaticities.map(|c| {
         let point = |v: ::exr::math::Vec2<f32>| DVec2::new(v.0.into(), v.1.into());
         Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) }
     });
-    let image = exr_read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(syntax)?;
+    let image = guarded(|| {
+        let reader = exr_read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        // On one thread: see `guarded`.
+        reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(syntax)
+    })?;
     let layer = image.layer_data.get(layer).ok_or_else(|| Cause::Syntax("a layer is missing".into()))?;
     let channels = &layer.channel_data.list;
     let channel = |i: usize| channels.get(i).map(values).ok_or_else(|| Cause::Syntax("a channel is missing".into()));

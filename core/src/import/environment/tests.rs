@@ -3,6 +3,7 @@ use glam::Vec3;
 
 use super::environment_from_bytes;
 use crate::import::Budget;
+use crate::import::tests::survive;
 
 fn hdr(header: &str, resolution: &str, pixels: &[u8]) -> Vec<u8> {
     let end = if header.is_empty() { "" } else { "\n" };
@@ -220,38 +221,26 @@ fn bad_values_are_repaired_and_counted() {
     assert!(notices.iter().any(|n| n.contains("black everywhere")), "{notices:?}");
 }
 
-/// Changes a few bytes of each file many times, from a fixed seed.
+#[test]
+fn a_panic_of_the_decoder_is_a_fault_of_the_file() {
+    let blocks = e::Blocks::Tiles(e::Vec2(2, 2));
+    let encoding = e::Encoding { compression: e::Compression::B44, blocks, line_order: e::LineOrder::Increasing };
+    let mut bytes = exr(vec![("R", half(0.5)), ("G", float(1.0)), ("B", half(2.0))], encoding);
+    // Tiles of 99 pixels across in a picture of 4: with overflow checks `exr` 1.74.2 panics on this.
+    let at = bytes.windows(9).position(|w| w == b"tiledesc\0").unwrap() + 9 + 4;
+    bytes[at] = 99;
+    assert!(refusal(&bytes).starts_with("sky.hdr: file: "));
+}
+
 #[test]
 fn mutated_exr_files_never_panic() {
-    let mut state = 6_u64;
-    // SplitMix64 (Steele, Lea and Flood 2014).
-    let mut random = |limit: usize| {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % limit.max(1) as u64) as usize
-    };
-    let budget = Budget { pixels: 1 << 16, ..Budget::default() };
     use e::Compression as C;
+    let budget = Budget { pixels: 1 << 16, ..Budget::default() };
     for compression in [C::Uncompressed, C::RLE, C::ZIP16, C::PIZ, C::PXR24, C::B44, C::DWAA(None)] {
         for blocks in [e::Blocks::ScanLines, e::Blocks::Tiles(e::Vec2(2, 2))] {
             let encoding = e::Encoding { compression, blocks, line_order: e::LineOrder::Increasing };
             let source = exr(vec![("R", half(0.5)), ("G", float(1.0)), ("B", half(2.0))], encoding);
-            for round in 0..300 {
-                let mut bytes = source.clone();
-                for _ in 0..=random(3) {
-                    let at = random(bytes.len());
-                    match random(8) {
-                        0 => bytes.truncate(at),
-                        1 => bytes.iter_mut().skip(at).take(4).for_each(|b| *b = 0xFF),
-                        2 => bytes.iter_mut().skip(at).take(8).for_each(|b| *b = 0x7F),
-                        _ => bytes.iter_mut().skip(at).take(1).for_each(|b| *b = random(256) as u8),
-                    }
-                }
-                let start = std::time::Instant::now();
-                let _ = environment_from_bytes(&bytes, "sky.exr", &budget);
-                assert!(start.elapsed().as_secs() < 5, "{compression:?}, round {round}: {:?}", start.elapsed());
-            }
+            survive(&source, 6, 500, |bytes| drop(environment_from_bytes(bytes, "sky.exr", &budget)));
         }
     }
 }

@@ -119,7 +119,7 @@ pub(super) fn read_all(
     report: &mut Report,
 ) -> Read {
     let mut textures = Textures { resolver, meter, images: Vec::new(), places: HashMap::new() };
-    let materials = list.iter().map(|json| convert(json, &mut textures, report)).collect();
+    let materials = list.iter().map(|mtl| convert(mtl, &mut textures, report)).collect();
     Read { materials, images: textures.images }
 }
 

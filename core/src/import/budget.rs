@@ -7,8 +7,10 @@ use super::Cause;
 pub struct Budget {
     /// Bytes of the model, its buffers and its encoded pictures together.
     pub file_bytes: u64,
-    /// Bytes of a JSON text, which takes several times its size once parsed.
+    /// Bytes of a JSON text.
     pub json_bytes: u64,
+    /// Objects in a JSON text; `{}` takes two bytes there and some hundreds once parsed.
+    pub json_objects: u64,
     /// Pixels of all decoded pictures together, or of one environment.
     pub pixels: u64,
     /// Nodes of the node hierarchy.
@@ -31,6 +33,7 @@ impl Default for Budget {
         Budget {
             file_bytes: 1 << 30,
             json_bytes: 1 << 28,
+            json_objects: 3_000_000,
             pixels: 1 << 28,
             nodes: 1_000_000,
             depth: 1024,

@@ -71,6 +71,17 @@ fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
 }
 
 #[test]
+fn json_of_countless_small_objects_is_refused_before_it_is_parsed() {
+    let nodes = "{},".repeat(4_000_000);
+    let json = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}{{}}]}}");
+    refused_bytes(json.as_bytes(), "m.gltf", &["JSON", "asks for 4000003 JSON objects; the limit is 3000000"]);
+    // Braces in a string are none.
+    let mut model = triangle();
+    model["nodes"][0]["name"] = format!("\\\"{}", "{".repeat(4_000_000)).into();
+    assert_eq!(notices(model.to_string().as_bytes(), "m.gltf"), [""; 0]);
+}
+
+#[test]
 fn required_extensions_are_refused_by_name_with_a_remedy_and_used_ones_noticed() {
     let mut model = triangle();
     model["extensionsRequired"] =

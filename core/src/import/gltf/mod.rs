@@ -72,7 +72,26 @@ fn parse(json: &[u8], meter: &Meter) -> Result<Root, Cause> {
     if asked > limit {
         return Err(Cause::Limit { what: "bytes of JSON", asked, limit });
     }
+    let (asked, limit) = (objects(json), meter.budget.json_objects);
+    if asked > limit {
+        return Err(Cause::Limit { what: "JSON objects", asked, limit });
+    }
     serde_json::from_slice(json).map_err(|e| Cause::Syntax(e.to_string()))
+}
+
+/// Opening braces outside of strings.
+fn objects(json: &[u8]) -> u64 {
+    let (mut count, mut quoted, mut escaped) = (0, false, false);
+    for byte in json {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' => escaped = quoted,
+            b'"' => quoted = !quoted,
+            b'{' if !quoted => count += 1,
+            _ => {}
+        }
+    }
+    count
 }
 
 /// True for extensions that may be required without harm.

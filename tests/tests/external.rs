@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use burnish_core::import::{ImportOptions, load_environment, load_scene};
+use burnish_core::import::{FolderResolver, ImportOptions, load_environment, load_scene, scene_from_bytes};
 use libtest_mimic::{Arguments, Failed, Trial};
 
 /// Radiance HDR keeps 8 bits of mantissa and readers differ in half a step of it.
@@ -14,6 +14,9 @@ const MAX_TOLERANCE: f32 = 0.01;
 
 /// Models that must be refused, and the word that the message must hold.
 const REFUSED: &[(&str, &str)] = &[("gltf/Box_Draco.glb", "KHR_draco_mesh_compression")];
+
+/// Models that bring tangents, made by other tools from the texture coordinates that they bring too.
+const TANGENTS: &[&str] = &["gltf/FlightHelmet/FlightHelmet.gltf", "gltf/suzanne/02_suzanne.gltf"];
 
 fn main() {
     let mut arguments = Arguments::from_args();
@@ -47,6 +50,10 @@ fn trials(data: &Path) -> Vec<Trial> {
         let max = maxima.get(&key).cloned();
         trials.push(Trial::test(format!("environment {key}"), move || environment(&path, max.as_deref())));
     }
+    for name in TANGENTS {
+        let path = models.join(name);
+        trials.push(Trial::test(format!("tangents {name}"), move || tangents(&path)));
+    }
     let found = trials.len();
     let listed = counts.len() + maxima.len();
     trials.push(Trial::test("every file of the tables is there", move || {
@@ -77,6 +84,36 @@ fn model(path: &Path, key: &str, triangles: Option<&str>) -> Result<(), Failed> 
         _ if scene.bounds().radius() > 0.0 => Ok(()),
         _ => Err("the model has no extent".into()),
     }
+}
+
+/// Tangents made by us agree with those of the file, corner by corner: the same sign and nearly the same direction.
+fn tangents(path: &Path) -> Result<(), Failed> {
+    let options = ImportOptions::default();
+    let theirs = load_scene(path, &options)?.scene;
+    let mut json: serde_json::Value = serde_json::from_slice(&std::fs::read(path)?)?;
+    for primitive in json["meshes"].as_array_mut().ok_or("no meshes")?.iter_mut() {
+        for primitive in primitive["primitives"].as_array_mut().ok_or("no primitives")? {
+            let attributes = primitive["attributes"].as_object_mut().ok_or("no attributes")?;
+            attributes.remove("TANGENT").ok_or("no tangents")?;
+        }
+    }
+    let folder = FolderResolver::beside(path)?;
+    let ours = scene_from_bytes(json.to_string().as_bytes(), "x.gltf", &folder, &options)?.scene;
+    let (mut corners, mut signs, mut near) = (0, 0, 0);
+    for (a, b) in theirs.meshes.iter().zip(&ours.meshes) {
+        for (i, j) in a.indices.iter().zip(&b.indices) {
+            let (a, b) = (a.tangents[*i as usize], b.tangents[*j as usize]);
+            corners += 1;
+            signs += usize::from(a.w == b.w);
+            near += usize::from(a.truncate().dot(b.truncate()) > 0.9);
+        }
+    }
+    println!("{corners} corners, {signs} of the same sign, {near} within 26 degrees");
+    // Tools differ in how they weight and split; a wrong convention would leave few.
+    if corners > 0 && signs * 100 >= corners * 99 && near * 100 >= corners * 97 {
+        return Ok(());
+    }
+    Err(format!("{corners} corners, {signs} of the same sign, {near} within 26 degrees").into())
 }
 
 fn environment(path: &Path, max: Option<&str>) -> Result<(), Failed> {

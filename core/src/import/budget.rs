@@ -7,8 +7,10 @@ use super::Cause;
 pub struct Budget {
     /// Bytes of the model, its buffers and its encoded pictures together.
     pub file_bytes: u64,
-    /// Bytes of a JSON text, which takes several times its size once parsed.
+    /// Bytes of a JSON text.
     pub json_bytes: u64,
+    /// Objects in a JSON text; `{}` takes two bytes there and some hundreds once parsed.
+    pub json_objects: u64,
     /// Pixels of all decoded pictures together, or of one environment.
     pub pixels: u64,
     /// Nodes of the node hierarchy.
@@ -17,6 +19,8 @@ pub struct Budget {
     pub depth: u64,
     /// Placed primitives after the hierarchy was expanded.
     pub instances: u64,
+    /// Triangles of all placed primitives together, those of a mesh counted as often as it is placed.
+    pub placed_triangles: u64,
     /// Vertices of all meshes, each mesh counted once.
     pub vertices: u64,
     /// Triangles of all meshes, each mesh counted once.
@@ -29,10 +33,12 @@ impl Default for Budget {
         Budget {
             file_bytes: 1 << 30,
             json_bytes: 1 << 28,
+            json_objects: 3_000_000,
             pixels: 1 << 28,
             nodes: 1_000_000,
             depth: 1024,
             instances: 1_000_000,
+            placed_triangles: 200_000_000,
             vertices: 60_000_000,
             triangles: 20_000_000,
         }
@@ -47,13 +53,14 @@ pub(super) struct Meter {
     bytes: u64,
     pixels: u64,
     instances: u64,
+    placed_triangles: u64,
     vertices: u64,
     triangles: u64,
 }
 
 impl Meter {
     pub fn new(budget: Budget) -> Meter {
-        Meter { budget, bytes: 0, pixels: 0, instances: 0, vertices: 0, triangles: 0 }
+        Meter { budget, bytes: 0, pixels: 0, instances: 0, placed_triangles: 0, vertices: 0, triangles: 0 }
     }
 
     /// Bytes that may still be read.
@@ -69,8 +76,10 @@ impl Meter {
         take(&mut self.pixels, width.saturating_mul(height), self.budget.pixels, "pixels")
     }
 
-    pub fn take_instance(&mut self) -> Result<(), Cause> {
-        take(&mut self.instances, 1, self.budget.instances, "instances")
+    /// One placed primitive of so many triangles.
+    pub fn take_instance(&mut self, triangles: u64) -> Result<(), Cause> {
+        take(&mut self.instances, 1, self.budget.instances, "instances")?;
+        take(&mut self.placed_triangles, triangles, self.budget.placed_triangles, "placed triangles")
     }
 
     pub fn take_vertices(&mut self, count: u64) -> Result<(), Cause> {

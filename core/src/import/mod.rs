@@ -10,6 +10,7 @@ mod data_uri;
 mod environment;
 mod folder;
 mod gltf;
+mod guard;
 mod numbers;
 mod obj;
 mod picture;
@@ -122,10 +123,9 @@ fn check_extent(scene: &Scene, report: &mut Report) {
     let bounds = scene.bounds();
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     let (radius, distance) = (bounds.radius(), bounds.center().length());
-    // Written so that NaN is refused.
-    if !(reach <= LARGEST) {
+    if reach.is_nan() || reach > LARGEST {
         report.fault("scene", Cause::Invalid(format!("reaches {reach} m from the origin; {LARGEST} m is the limit")));
-    } else if radius < SMALLEST || radius > 1e-3 * LARGEST {
+    } else if !(SMALLEST..=1e-3 * LARGEST).contains(&radius) {
         report.notice("scene", format!("has a radius of {radius} m; is its unit the metre?"));
     } else if distance > FAR * radius {
         let step = distance * f32::EPSILON;

@@ -2,20 +2,13 @@
 
 use super::Cause;
 
-/// The first index at which a list is not finite, with how many are not.
-pub(super) fn infinite<const N: usize>(list: &[[f32; N]]) -> Option<(usize, usize)> {
-    let bad = |v: &[f32; N]| v.iter().any(|x| !x.is_finite());
-    let first = list.iter().position(bad)?;
-    Some((first, list[first..].iter().filter(|v| bad(v)).count()))
-}
-
 /// Refuses a list with NaN or infinite numbers and says where the first is.
 pub(super) fn finite<const N: usize>(what: &str, list: &[[f32; N]]) -> Result<(), Cause> {
-    match infinite(list) {
-        None => Ok(()),
-        Some((first, 1)) => Err(Cause::Invalid(format!("{what} {first} is not finite"))),
-        Some((first, count)) => Err(Cause::Invalid(format!("{what} {first} is not finite, and so are {count} in all"))),
-    }
+    let bad = |v: &[f32; N]| v.iter().any(|x| !x.is_finite());
+    let Some(first) = list.iter().position(bad) else { return Ok(()) };
+    let count = list[first..].iter().filter(|v| bad(v)).count();
+    let more = if count > 1 { format!(", and so are {count} in all") } else { String::new() };
+    Err(Cause::Invalid(format!("{what} {first} is not finite{more}")))
 }
 
 /// The element of a list, or the fault of an index outside.

@@ -6,6 +6,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use rayon::prelude::*;
 
 use super::budget::Meter;
+use super::guard::guarded;
 use super::{Cause, sniff};
 use crate::scene::{Image, Texels};
 
@@ -25,15 +26,18 @@ impl Encoded {
             "a JPEG picture" => ImageFormat::Jpeg,
             found => return Err(Cause::Content { found: found.into(), expected: "a PNG or JPEG picture" }),
         };
-        let (width, height) = reader(&bytes, format).into_decoder().map_err(syntax)?.dimensions();
+        let size = || Ok(reader(&bytes, format).into_decoder().map_err(syntax)?.dimensions());
+        let (width, height) = guarded(size)?;
         meter.take_pixels(width.into(), height.into())?;
         Ok(Encoded { bytes, format, at })
     }
 
     /// Decodes the pixels.
     pub fn decode(&self) -> Result<Image, Cause> {
-        let decoder = reader(&self.bytes, self.format).into_decoder().map_err(syntax)?;
-        let picture = DynamicImage::from_decoder(decoder).map_err(syntax)?;
+        let picture = guarded(|| {
+            let decoder = reader(&self.bytes, self.format).into_decoder().map_err(syntax)?;
+            DynamicImage::from_decoder(decoder).map_err(syntax)
+        })?;
         let (width, height) = (picture.width(), picture.height());
         let deep = matches!(
             picture,

@@ -60,18 +60,13 @@ pub(super) fn model(bytes: &[u8], file_name: &str) -> Result<Model, Cause> {
     let named_obj = Path::new(file_name).extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
     match found {
         "a GLB model" | "JSON" => Ok(Model::Gltf),
-        "text" if named_obj || looks_like_obj(bytes) => Ok(Model::Obj),
-        // A comment may hold any byte, and a name any encoding.
-        "unknown binary data" if named_obj && looks_like_obj(bytes) => Ok(Model::Obj),
+        "text" if named_obj || has_vertices(bytes) => Ok(Model::Obj),
         _ => Err(Cause::Content { found: found.into(), expected: "a glTF, GLB or OBJ model" }),
     }
 }
 
-/// True when one of the first lines is a statement of OBJ.
-fn looks_like_obj(bytes: &[u8]) -> bool {
-    const STATEMENTS: [&[u8]; 7] = [b"v", b"vn", b"vt", b"f", b"o", b"g", b"mtllib"];
-    let lines = bytes.split(|b| *b == b'\n').take(64);
-    lines
-        .filter_map(|line| line.split(u8::is_ascii_whitespace).find(|word| !word.is_empty()))
-        .any(|word| STATEMENTS.contains(&word))
+/// True when one of the first lines is a vertex of OBJ.
+fn has_vertices(bytes: &[u8]) -> bool {
+    let mut lines = bytes.split(|b| *b == b'\n').take(64);
+    lines.any(|line| line.trim_ascii_start().starts_with(b"v "))
 }

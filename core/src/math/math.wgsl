@@ -83,6 +83,14 @@ fn sampling_hammersley(i: u32, n: u32) -> vec2f {
     return vec2f(f32(i) / f32(n), sampling_radical_inverse(i));
 }
 
+// Point i of n for maps that take x around and y outward: a spiral whose cells are as wide as they are long. `offset` in
+// [0, 1)^2 turns it and moves it outward within a step.
+fn sampling_spiral(i: u32, n: u32, offset: vec2f) -> vec2f {
+    // Steps of the golden angle, in integers so that no digit is lost: 2^32 over the golden ratio, wrapping.
+    let turn = f32((i * 2654435769u) >> 8u) * (1.0 / 16777216.0);
+    return vec2f(fract(turn + offset.x), (f32(i) + offset.y) / f32(n));
+}
+
 // Hash of 32 bits. Jarzynski and Olano 2020.
 fn sampling_pcg(v: u32) -> u32 {
     let state = v * 747796405u + 2891336453u;

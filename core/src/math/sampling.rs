@@ -39,6 +39,16 @@ pub fn hammersley(i: u32, n: u32) -> Vec2 {
     Vec2::new(i as f32 / n as f32, radical_inverse(i))
 }
 
+/// Point `i` of `n` for maps that take x around and y outward: a spiral whose cells are as wide as they are long.
+/// `offset` in [0, 1)^2 turns it and moves it outward within a step.
+///
+/// Vogel 1979, A better way to construct the sunflower head.
+pub fn spiral(i: u32, n: u32, offset: Vec2) -> Vec2 {
+    // Steps of the golden angle, in integers so that no digit is lost: 2^32 over the golden ratio, wrapping.
+    let turn = (i.wrapping_mul(2_654_435_769) >> 8) as f32 / 16_777_216.0;
+    Vec2::new((turn + offset.x).fract(), (i as f32 + offset.y) / n as f32)
+}
+
 /// Hash of 32 bits. Jarzynski and Olano 2020, Hash Functions for GPU Rendering.
 pub fn pcg(v: u32) -> u32 {
     let state = v.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);

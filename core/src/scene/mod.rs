@@ -45,7 +45,8 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit normals; never empty after import.
     pub normals: Vec<Vec3>,
-    /// Unit tangents with the sign of the bitangent in w (`bitangent = w * cross(normal, tangent)`); never empty after import.
+    /// Unit tangents with the sign of the bitangent in w (`bitangent = w * cross(normal, tangent)`); never empty after
+    /// import.
     pub tangents: Vec<Vec4>,
     /// Two texture coordinate sets, origin at the image's top left.
     pub uvs: [Vec<Vec2>; 2],

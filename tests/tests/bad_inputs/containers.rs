@@ -39,6 +39,14 @@ fn chunks_that_are_too_long_twice_there_or_not_json_are_refused() {
 }
 
 #[test]
+fn chunks_of_other_kinds_zeros_after_the_json_and_bytes_after_the_end_are_no_harm() {
+    let json = [triangle().to_string().as_bytes(), &[0; 3]].concat();
+    let mut file = glb(&json, &[(b"XTRA", &[1, 2, 3])]);
+    file.extend([9; 5]);
+    assert_eq!(notices(&file, "m.glb"), [""; 0]);
+}
+
+#[test]
 fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
     let deep = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}]}}", "[".repeat(200_000));
     refused_bytes(deep.as_bytes(), "m.gltf", &["JSON", "line 1 column"]);
@@ -54,12 +62,23 @@ fn json_that_is_deep_doubled_or_not_json_is_refused_with_its_place() {
     refused_bytes(
         b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"name\":\"\\ud800\"}]}",
         "m.gltf",
-        &["JSON", "surrogate"],
+        &["JSON", "hex escape"],
     );
     let huge = b"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"scale\":[1e999,1,1]}]}";
     refused_bytes(huge, "m.gltf", &["JSON", "number out of range"]);
     refused_bytes(b"{}", "m.gltf", &["JSON", "missing field `asset`"]);
     refused_bytes(b"{\"asset\":{\"version\":\"1.0\"}}", "m.gltf", &["asset", "glTF version '1.0'"]);
+}
+
+#[test]
+fn json_of_countless_small_objects_is_refused_before_it_is_parsed() {
+    let nodes = "{},".repeat(4_000_000);
+    let json = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{nodes}{{}}]}}");
+    refused_bytes(json.as_bytes(), "m.gltf", &["JSON", "asks for 4000003 JSON objects; the limit is 3000000"]);
+    // Braces in a string are none.
+    let mut model = triangle();
+    model["nodes"][0]["name"] = format!("\\\"{}", "{".repeat(4_000_000)).into();
+    assert_eq!(notices(model.to_string().as_bytes(), "m.gltf"), [""; 0]);
 }
 
 #[test]

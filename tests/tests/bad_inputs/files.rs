@@ -152,3 +152,12 @@ fn obj_libraries_and_their_maps_stay_inside_too() {
     let text = load_scene(&path, &ImportOptions::default()).expect("read").notices[0].to_string();
     assert!(text.contains("m.obj: material 'a': texture '../x.png' is left out: '../x.png' leads out"), "{text}");
 }
+
+#[test]
+fn a_model_that_is_not_there_is_refused_by_name() {
+    let folder = Folder::new("gone");
+    let text = load_scene(&folder.model().join("gone.glb"), &ImportOptions::default()).expect_err("gone").to_string();
+    assert!(text.starts_with("gone.glb: file: ") && text.contains("does not exist"), "{text}");
+    let text = load_scene(&folder.model(), &ImportOptions::default()).expect_err("a folder").to_string();
+    assert!(text.starts_with("model: file: ") && text.contains("is a folder"), "{text}");
+}

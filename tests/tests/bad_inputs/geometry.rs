@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::sources::{notices, percent, read, refused, refused_bytes, triangle};
+use crate::sources::{PNG, notices, percent, read, refused, refused_bytes, triangle};
 
 /// Adds a buffer, a view and an accessor over `bytes`.
 fn add(model: &mut Value, bytes: &[u8], mut accessor: Value) -> usize {
@@ -94,10 +94,11 @@ fn numbers_that_are_not_finite_are_refused_in_every_attribute_and_matrix() {
     }
     let mut model = triangle();
     model["nodes"][0]["translation"] = json!([1e39, 0, 0]);
-    refused(&model, &["node 0", "the transform is not finite"]);
+    refused(&model, &["JSON", "number out of range at line 1 column"]);
+    let large = json!([1e30, 1e30, 1e30]);
+    model["nodes"] = json!([{ "scale": large, "children": [1] }, { "scale": large, "mesh": 0 }]);
+    refused(&model, &["node 1", "passes the range of 32-bit numbers"]);
     let mut model = triangle();
-    model["nodes"][0]["matrix"] = json!([1e39, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-    refused(&model, &["node 0", "the transform is not finite"]);
     model["nodes"][0]["matrix"] = json!([1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     refused(&model, &["node 0", "not affine"]);
     let mut model = triangle();
@@ -192,7 +193,7 @@ fn extents_that_f32_cannot_hold_are_refused_and_odd_ones_noticed() {
         model
     };
     refused(&scaled(1e13, 0.0), &["scene", "reaches", "m is the limit"]);
-    refused(&scaled(3e38, 3e38), &["scene", "reaches"]);
+    refused(&scaled(1.0, 3e38), &["scene", "reaches"]);
     for (scale, offset, words) in [
         (1e10, 0.0, "is its unit the metre?"),
         (1e-12, 0.0, "is its unit the metre?"),
@@ -252,9 +253,7 @@ fn odd_but_readable_obj_text_is_read_in_bounded_time() {
 
 #[test]
 fn material_values_out_of_range_are_clamped_with_a_notice() {
-    for (field, value) in
-        [("roughnessFactor", 2.0), ("roughnessFactor", -1.0), ("metallicFactor", 1.5), ("roughnessFactor", 1e39)]
-    {
+    for (field, value) in [("roughnessFactor", 2.0), ("roughnessFactor", -1.0), ("metallicFactor", 1.5)] {
         let mut model = triangle();
         model["materials"] = json!([{ "name": "skin", "pbrMetallicRoughness": { field: value } }]);
         model["meshes"][0]["primitives"][0]["material"] = 0.into();
@@ -263,7 +262,7 @@ fn material_values_out_of_range_are_clamped_with_a_notice() {
     }
     let mut model = triangle();
     model["materials"] =
-        json!([{ "emissiveFactor": [1e39, -1, 0], "extensions": { "KHR_materials_ior": { "ior": -2 } } }]);
+        json!([{ "emissiveFactor": [1, -1, 0], "extensions": { "KHR_materials_ior": { "ior": -2 } } }]);
     model["meshes"][0]["primitives"][0]["material"] = 0.into();
     let notices = notices(model.to_string().as_bytes(), "m.gltf").join("\n");
     assert!(notices.contains("emissiveFactor was") && notices.contains("ior was -2; 1 is used"), "{notices}");
@@ -319,14 +318,12 @@ fn checksum(bytes: &[u8]) -> u32 {
 #[test]
 fn a_texture_that_asks_for_odd_coordinates_or_samplers_is_shown_with_a_notice() {
     let mut model = triangle();
-    // One black pixel.
-    let png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\x0dIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\
-        \x00\x00\x00\x0aIDAT\x78\x9c\x63\x60\x00\x00\x00\x02\x00\x01\x48\xaf\xa4\x71\x00\x00\x00\x00IEND\xae\x42\x60\x82";
-    model["images"] = json!([{ "uri": percent(png) }]);
+    model["images"] = json!([{ "uri": percent(PNG) }]);
     model["samplers"] = json!([{ "wrapS": 99, "minFilter": 99 }]);
     model["textures"] = json!([{ "source": 0, "sampler": 0 }, { "source": 0, "sampler": 5 }]);
     model["materials"] = json!([{
-        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 7 } }, "emissiveTexture": { "index": 1 },
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 7 } },
+        "emissiveTexture": { "index": 1 },
     }]);
     model["meshes"][0]["primitives"][0]["material"] = 0.into();
     let notices = notices(model.to_string().as_bytes(), "m.gltf").join("\n");
@@ -337,5 +334,41 @@ fn a_texture_that_asks_for_odd_coordinates_or_samplers_is_shown_with_a_notice() 
         "mesh 0 'body', primitive 0: a texture asks for TEXCOORD_0, which the primitive lacks",
     ] {
         assert!(notices.contains(words), "{notices}\nlacks {words}");
+    }
+}
+
+#[test]
+fn a_picture_with_a_wrong_checksum_or_cut_short_is_left_out_with_a_notice() {
+    let mut wrong = PNG.to_vec();
+    wrong[30] ^= 1;
+    for bytes in [wrong.as_slice(), &PNG[..40], b"\xff\xd8\xff\xe0\x00\x10JFIF"] {
+        let mut model = triangle();
+        model["images"] = json!([{ "uri": percent(bytes) }]);
+        model["textures"] = json!([{ "source": 0 }]);
+        let notices = notices(model.to_string().as_bytes(), "m.gltf");
+        assert!(notices[0].starts_with("m.gltf: image 0: the texture is left out: "), "{notices:?}");
+    }
+}
+
+#[test]
+fn a_mesh_placed_too_often_is_refused() {
+    let mut model = triangle();
+    model["nodes"] = vec![json!({ "mesh": 0 }); 50].into();
+    model["scenes"] = json!([{ "nodes": (0..50).collect::<Vec<_>>() }]);
+    for (budget, words) in [
+        (
+            burnish_core::import::Budget { instances: 49, ..Default::default() },
+            "asks for 50 instances; the limit is 49",
+        ),
+        (burnish_core::import::Budget { placed_triangles: 49, ..Default::default() }, "asks for 50 placed triangles"),
+        (burnish_core::import::Budget { nodes: 49, ..Default::default() }, "asks for 50 nodes"),
+        (burnish_core::import::Budget { json_bytes: 99, ..Default::default() }, "bytes of JSON; the limit is 99"),
+    ] {
+        let options = burnish_core::import::ImportOptions { budget, ..Default::default() };
+        let bytes = model.to_string();
+        let error =
+            burnish_core::import::scene_from_bytes(bytes.as_bytes(), "m.gltf", &crate::sources::Nothing, &options);
+        let text = error.expect_err("over the budget").to_string();
+        assert!(text.starts_with("m.gltf: ") && text.contains(words), "{text}");
     }
 }

@@ -4,6 +4,8 @@ use std::time::{Duration, Instant};
 
 use burnish_core::import::{Budget, ImportOptions, environment_from_bytes, scene_from_bytes};
 
+use serde_json::json;
+
 use crate::sources::{Nothing, triangle, triangle_glb};
 
 /// Changes per file.
@@ -86,17 +88,23 @@ fn environment(bytes: &[u8], name: &str) {
 fn mutated_gltf_and_glb_never_panic() {
     survive(&triangle_glb(), 1, |bytes| model(bytes, "m.glb"));
     let mut rich = triangle();
-    rich["materials"] = serde_json::json!([{ "pbrMetallicRoughness": { "roughnessFactor": 0.5, "baseColorFactor": [1, 1, 1, 1] },
-        "normalTexture": { "index": 0, "scale": 1.0 }, "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1 } } }]);
-    rich["cameras"] = serde_json::json!([{ "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } }]);
-    rich["nodes"] = serde_json::json!([{ "mesh": 0, "children": [1], "scale": [1, 2, 3] }, { "camera": 0, "rotation": [0, 0, 0, 1] }]);
+    rich["materials"] = json!([{
+        "pbrMetallicRoughness": { "roughnessFactor": 0.5, "baseColorFactor": [1, 1, 1, 1] },
+        "normalTexture": { "index": 0, "scale": 1.0 },
+        "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1 } },
+    }]);
+    rich["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } }]);
+    rich["nodes"] = json!([
+        { "mesh": 0, "children": [1], "scale": [1, 2, 3] },
+        { "camera": 0, "rotation": [0, 0, 0, 1] },
+    ]);
     survive(rich.to_string().as_bytes(), 2, |bytes| model(bytes, "m.gltf"));
 }
 
 #[test]
 fn mutated_obj_never_panics() {
-    let text = "# box\nmtllib a.mtl\no box\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 -1e-3\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
-                usemtl x\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng top\nf -1//-1 -2//-1 -3//-1\n";
+    let text = "# box\nmtllib a.mtl\no box\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 -1e-3\nvt 0 0\nvt 1 0\n\
+                vt 1 1\nvn 0 0 1\nusemtl x\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/1\ng top\nf -1//-1 -2//-1 -3//-1\n";
     survive(text.as_bytes(), 3, |bytes| model(bytes, "m.obj"));
 }
 

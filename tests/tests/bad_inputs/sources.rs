@@ -14,6 +14,12 @@ impl Resolver for Nothing {
     }
 }
 
+/// A PNG of one black pixel.
+pub const PNG: &[u8] = b"\x89PNG\r\n\x1a\n\
+    \x00\x00\x00\x0dIHDR\x00\x00\x00\x01\x00\x00\x00\x01\x08\x00\x00\x00\x00\x3a\x7e\x9b\x55\
+    \x00\x00\x00\x0aIDAT\x78\x9c\x63\x60\x00\x00\x00\x02\x00\x01\x48\xaf\xa4\x71\
+    \x00\x00\x00\x00IEND\xae\x42\x60\x82";
+
 /// A model of one triangle whose buffer is inline.
 pub fn triangle() -> Value {
     let numbers = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];

@@ -10,9 +10,13 @@ use glam::{DVec2, Vec3};
 
 use super::primaries::Primaries;
 use super::{Raw, check_size};
+use crate::import::guard::guarded;
 use crate::import::report::Report;
 use crate::import::resolve::quoted;
 use crate::import::{Budget, Cause};
+
+/// Channels in one layer; film pipelines write some hundreds.
+const MOST_CHANNELS: usize = 1024;
 
 /// Channels of one layer that make a picture, by index in the header's list.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,21 +27,18 @@ enum Choice {
 
 pub(super) fn read(bytes: &[u8], budget: &Budget, report: &mut Report) -> Result<Raw, Cause> {
     check_flags(bytes)?;
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(syntax)?;
+    let meta = guarded(|| MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(syntax))?;
     let (layer, choice) = check_headers(&meta.headers, bytes.len() as u64, budget, report)?;
     let header = &meta.headers[layer];
     let primaries = header.shared_attributes.chromaticities.map(|c| {
         let point = |v: ::exr::math::Vec2<f32>| DVec2::new(v.0.into(), v.1.into());
         Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) }
     });
-    let image = exr_read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(syntax)?;
+    let image = guarded(|| {
+        let reader = exr_read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        // On one thread: see `guarded`.
+        reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(syntax)
+    })?;
     let layer = image.layer_data.get(layer).ok_or_else(|| Cause::Syntax("a layer is missing".into()))?;
     let channels = &layer.channel_data.list;
     let channel = |i: usize| channels.get(i).map(values).ok_or_else(|| Cause::Syntax("a channel is missing".into()));
@@ -94,6 +95,9 @@ fn check_headers(
             )));
         }
         let channels = header.channels.list.len() as u64;
+        if channels > MOST_CHANNELS as u64 {
+            return Err(Cause::Limit { what: "channels", asked: channels, limit: MOST_CHANNELS as u64 });
+        }
         samples = samples.saturating_add((width * height).saturating_mul(channels));
     }
     // Four channels of the largest picture.

@@ -3,6 +3,7 @@ use glam::Vec3;
 
 use super::environment_from_bytes;
 use crate::import::Budget;
+use crate::import::tests::survive;
 
 fn hdr(header: &str, resolution: &str, pixels: &[u8]) -> Vec<u8> {
     let end = if header.is_empty() { "" } else { "\n" };
@@ -218,4 +219,33 @@ fn bad_values_are_repaired_and_counted() {
     }
     let (_, notices) = read(&exr(vec![("Y", float(0.0))], plain()));
     assert!(notices.iter().any(|n| n.contains("black everywhere")), "{notices:?}");
+}
+
+/// The panic is an overflow, which release builds do not check.
+#[cfg(debug_assertions)]
+#[test]
+fn a_panic_of_the_decoder_is_a_fault_of_the_file() {
+    let blocks = e::Blocks::Tiles(e::Vec2(2, 2));
+    let encoding = e::Encoding { compression: e::Compression::B44, blocks, line_order: e::LineOrder::Increasing };
+    let mut bytes = exr(vec![("R", half(0.5)), ("G", float(1.0)), ("B", half(2.0))], encoding);
+    // Tiles of 99 pixels across in a picture of 4, and no stated number of chunks that would contradict.
+    let place = |word: &[u8]| bytes.windows(word.len()).position(|w| w == word).unwrap();
+    let (width, count) = (place(b"tiledesc\0") + 9 + 4, place(b"chunkCount"));
+    bytes[width] = 99;
+    bytes[count] = b'x';
+    let text = refusal(&bytes);
+    assert!(text.starts_with("sky.hdr: file: the decoder failed on the content"), "{text}");
+}
+
+#[test]
+fn mutated_exr_files_never_panic() {
+    use e::Compression as C;
+    let budget = Budget { pixels: 1 << 16, ..Budget::default() };
+    for compression in [C::Uncompressed, C::RLE, C::ZIP16, C::PIZ, C::PXR24, C::B44, C::DWAA(None)] {
+        for blocks in [e::Blocks::ScanLines, e::Blocks::Tiles(e::Vec2(2, 2))] {
+            let encoding = e::Encoding { compression, blocks, line_order: e::LineOrder::Increasing };
+            let source = exr(vec![("R", half(0.5)), ("G", float(1.0)), ("B", half(2.0))], encoding);
+            survive(&source, 6, 500, |bytes| drop(environment_from_bytes(bytes, "sky.exr", &budget)));
+        }
+    }
 }

@@ -32,7 +32,8 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Cause> {
             return Err(syntax(format!("GLB chunk {index}: states {size} bytes, {} are left", rest.len() - 8)));
         };
         match index {
-            0 if kind == JSON_CHUNK => json = Some(data),
+            // Padding is of spaces; some writers leave zeros, which are no JSON.
+            0 if kind == JSON_CHUNK => json = Some(&data[..data.iter().rposition(|b| *b != 0).map_or(0, |i| i + 1)]),
             0 => return Err(syntax("GLB chunk 0: is not JSON".into())),
             _ if kind == JSON_CHUNK => return Err(syntax(format!("GLB chunk {index}: a second JSON chunk"))),
             _ if kind == BINARY_CHUNK && binary.is_some() => {

@@ -36,6 +36,9 @@ const SUPPORTED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
+/// Extensions that say nothing about the picture: how triangles were cut from polygons, and who made the file.
+const WITHOUT_LOOK: &[&str] = &["FB_ngon_encoding", "KHR_xmp", "KHR_xmp_json_ld"];
+
 /// Media types of inline buffers.
 const BUFFER_MEDIA: &[&str] = &["application/octet-stream", "application/gltf-buffer"];
 
@@ -69,7 +72,31 @@ fn parse(json: &[u8], meter: &Meter) -> Result<Root, Cause> {
     if asked > limit {
         return Err(Cause::Limit { what: "bytes of JSON", asked, limit });
     }
+    let (asked, limit) = (objects(json), meter.budget.json_objects);
+    if asked > limit {
+        return Err(Cause::Limit { what: "JSON objects", asked, limit });
+    }
     serde_json::from_slice(json).map_err(|e| Cause::Syntax(e.to_string()))
+}
+
+/// Opening braces outside of strings.
+fn objects(json: &[u8]) -> u64 {
+    let (mut count, mut quoted, mut escaped) = (0, false, false);
+    for byte in json {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' => escaped = quoted,
+            b'"' => quoted = !quoted,
+            b'{' if !quoted => count += 1,
+            _ => {}
+        }
+    }
+    count
+}
+
+/// True for extensions that may be required without harm.
+fn known(extension: &str) -> bool {
+    SUPPORTED.contains(&extension) || WITHOUT_LOOK.contains(&extension)
 }
 
 /// Refuses files that cannot be shown as meant; `None` when it did.
@@ -81,7 +108,7 @@ fn check_asset(root: &Root, meter: &Meter, report: &mut Report) -> Option<()> {
         sound = false;
     }
     for name in &root.extensions_required {
-        if !SUPPORTED.contains(&name.as_str()) {
+        if !known(name) {
             report.fault("extensionsRequired", Cause::Extension(name.chars().take(80).collect()));
             sound = false;
         }
@@ -93,7 +120,7 @@ fn check_asset(root: &Root, meter: &Meter, report: &mut Report) -> Option<()> {
     }
     for name in &root.extensions_used {
         match name.as_str() {
-            name if SUPPORTED.contains(&name) || root.extensions_required.iter().any(|r| r == name) => {}
+            name if known(name) || root.extensions_required.iter().any(|r| r == name) => {}
             "KHR_materials_pbrSpecularGlossiness" => report.notice(
                 "extensionsUsed",
                 "KHR_materials_pbrSpecularGlossiness is not supported; the metallic-roughness values are shown instead",

@@ -151,12 +151,17 @@ fn place(
     }
     let Some(mesh) = node.mesh else { return Some(()) };
     let transform = affine(world_from_local);
+    if !transform.is_finite() {
+        report.fault(at, Cause::Invalid("the transform to world space passes the range of 32-bit numbers".into()));
+        return Some(());
+    }
     if flat(world_from_local) || !transform.inverse().is_finite() {
         report.notice(at, "meshes whose transform cannot be inverted (a scale of 0) are not shown");
         return Some(());
     }
     for &(mesh, material) in meshes.primitives(data, mesh.value(), at, scene, meter, report) {
-        let taken = meter.take_instance();
+        let triangles = scene.meshes[mesh].indices.len() / 3;
+        let taken = meter.take_instance(triangles as u64);
         report.keep(at, taken)?;
         scene.instances.push(Instance { name: name(), mesh, material, world_from_local: transform });
     }
@@ -171,8 +176,8 @@ pub(super) fn affine(a: DAffine3) -> Affine3A {
 fn flat(a: DAffine3) -> bool {
     let m: DMat3 = a.matrix3;
     let box_volume = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    // Written so that NaN counts as flat.
-    !(m.determinant().abs() > FLAT * box_volume)
+    let volume = m.determinant().abs();
+    volume.is_nan() || volume <= FLAT * box_volume
 }
 
 /// Primitives that were read: each mesh once, however many nodes show it.

@@ -1,5 +1,7 @@
 //! OBJ text, line by line: joined, checked and counted before it is parsed.
 
+use std::borrow::Cow;
+
 use super::Cause;
 use crate::import::budget::Meter;
 use crate::import::report::Report;
@@ -33,37 +35,16 @@ pub(super) fn check(source: &str, meter: &mut Meter, report: &mut Report) -> Opt
     let mut text = String::with_capacity(source.len());
     let mut sound = true;
     for (number, line) in joined(source) {
-        let statement = line.split('#').next().unwrap_or("").trim();
-        let mut words = statement.split_whitespace();
-        let keep = match words.next() {
-            None => Ok(false),
-            Some("v") => seen.position(words, meter),
-            Some("vt") => seen.coordinate(words).map(|()| true),
-            Some("vn") => numbers(words, &[3]).map(|_| seen.normals += 1).map(|()| true),
-            Some("f") => seen.face(words, number, meter).map(|()| true),
-            // Names may hold '#', so the whole line counts.
-            Some("o" | "g" | "usemtl" | "mtllib") => {
-                text.push_str(&spaced(line.trim()));
-                text.push('\n');
-                Ok(false)
-            }
-            Some("p" | "l") => {
-                report.notice(format!("line {number}"), "points and lines are not shown");
-                Ok(false)
-            }
-            Some("curv" | "curv2" | "surf") => {
-                report.notice(format!("line {number}"), "free-form curves and surfaces are not shown");
-                Ok(false)
-            }
-            Some(_) => Ok(false),
-        };
-        match report.keep(format!("line {number} {}", quoted(statement)), keep) {
-            Some(true) => {
-                text.push_str(statement);
+        match seen.statement(line.trim(), number, meter, report) {
+            Ok(Some(statement)) => {
+                text.push_str(&statement);
                 text.push('\n');
             }
-            Some(false) => {}
-            None => sound = false,
+            Ok(None) => {}
+            Err(cause) => {
+                report.fault(format!("line {number} {}", quoted(line.trim())), cause);
+                sound = false;
+            }
         }
     }
     for ((index, line), (what, count)) in seen.greatest.into_iter().zip(LISTS.into_iter().zip(seen.counts())) {
@@ -92,8 +73,41 @@ impl Seen {
         [self.positions, self.coordinates, self.normals]
     }
 
+    /// Checks one statement; returns it as `tobj` shall see it, or none where it need not.
+    fn statement<'a>(
+        &mut self,
+        line: &'a str,
+        number: usize,
+        meter: &mut Meter,
+        report: &mut Report,
+    ) -> Result<Option<Cow<'a, str>>, Cause> {
+        let statement = line.split('#').next().unwrap_or("").trim();
+        let mut words = statement.split_whitespace();
+        match words.next() {
+            Some("v") => self.position(words, meter)?,
+            Some("vt") => self.coordinate(words)?,
+            Some("vn") => {
+                numbers(words, &[3])?;
+                self.normals += 1;
+            }
+            Some("f") => self.face(words, number, meter)?,
+            // Names may hold '#', so the whole line counts.
+            Some("o" | "g" | "usemtl" | "mtllib") => return Ok(Some(spaced(line).into())),
+            Some("p" | "l") => {
+                report.notice(format!("line {number}"), "points and lines are not shown");
+                return Ok(None);
+            }
+            Some("curv" | "curv2" | "surf") => {
+                report.notice(format!("line {number}"), "free-form curves and surfaces are not shown");
+                return Ok(None);
+            }
+            _ => return Ok(None),
+        }
+        Ok(Some(statement.into()))
+    }
+
     /// `v x y z`, with a weight or a colour after it.
-    fn position<'a>(&mut self, words: impl Iterator<Item = &'a str>, meter: &mut Meter) -> Result<bool, Cause> {
+    fn position<'a>(&mut self, words: impl Iterator<Item = &'a str>, meter: &mut Meter) -> Result<(), Cause> {
         let values = numbers(words, &[3, 4, 6])?;
         if values.len() == 4 {
             let weight = values[3];
@@ -104,7 +118,7 @@ impl Seen {
         meter.take_vertices(1)?;
         self.positions += 1;
         self.colored += usize::from(values.len() == 6);
-        Ok(true)
+        Ok(())
     }
 
     fn coordinate<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), Cause> {
@@ -178,7 +192,7 @@ fn invalid(text: &str) -> Cause {
 }
 
 /// Lines with their numbers from 1; a backslash at the end joins a line with the next.
-fn joined(source: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
+fn joined(source: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = source.lines().enumerate();
     std::iter::from_fn(move || {
         let (index, first) = lines.next()?;

@@ -119,7 +119,7 @@ pub(super) fn read_all(
     report: &mut Report,
 ) -> Read {
     let mut textures = Textures { resolver, meter, images: Vec::new(), places: HashMap::new() };
-    let materials = list.iter().map(|json| convert(json, &mut textures, report)).collect();
+    let materials = list.iter().map(|mtl| convert(mtl, &mut textures, report)).collect();
     Read { materials, images: textures.images }
 }
 
@@ -149,33 +149,39 @@ fn convert(mtl: &tobj::Material, textures: &mut Textures<'_>, report: &mut Repor
         double_sided: true,
         ..Material::default()
     };
-    m.base_color_texture = mtl.diffuse_texture.as_deref().and_then(|t| textures.get(t, &at, report));
-    m.specular_color_texture = mtl.specular_texture.as_deref().and_then(|t| textures.get(t, &at, report));
-    m.emission_texture = extra("map_Ke").and_then(|t| textures.get(t, &at, report));
+    textured(mtl, &mut m, &at, textures, report);
+    m
+}
+
+/// Adds the textures and what follows from them.
+fn textured(mtl: &tobj::Material, m: &mut Material, at: &str, textures: &mut Textures<'_>, report: &mut Report) {
+    let extra = |key: &str| mtl.unknown_param.get(key).map(String::as_str);
+    m.base_color_texture = mtl.diffuse_texture.as_deref().and_then(|t| textures.get(t, at, report));
+    m.specular_color_texture = mtl.specular_texture.as_deref().and_then(|t| textures.get(t, at, report));
+    m.emission_texture = extra("map_Ke").and_then(|t| textures.get(t, at, report));
     if m.emission_texture.is_some() && mtl.emissive.is_none() {
         m.emission = Vec3::ONE;
     }
-    m.normal_texture = extra("norm").and_then(|t| textures.get(t, &at, report));
-    m.metallic_roughness_texture = textures.packed(extra("map_Pr"), extra("map_Pm"), &at, report);
+    m.normal_texture = extra("norm").and_then(|t| textures.get(t, at, report));
+    m.metallic_roughness_texture = textures.packed(extra("map_Pr"), extra("map_Pm"), at, report);
     if m.metallic_roughness_texture.is_some() {
         // A texture replaces its number, of which exporters leave the default.
         m.roughness = if extra("map_Pr").is_some() { 1.0 } else { m.roughness };
         m.metallic = if extra("map_Pm").is_some() { 1.0 } else { m.metallic };
     }
     let cutout = mtl.dissolve_texture.is_some() && mtl.dissolve_texture == mtl.diffuse_texture;
-    if cutout || opacity < 1.0 {
+    if cutout || m.opacity < 1.0 {
         m.alpha_mode = AlphaMode::Blend;
     }
     if mtl.dissolve_texture.is_some() && !cutout {
-        report.notice(&at, "map_d is read only where it is the picture of map_Kd; it is left out");
+        report.notice(at, "map_d is read only where it is the picture of map_Kd; it is left out");
     }
     if mtl.normal_texture.is_some() {
-        report.notice(&at, "bump (height) textures are left out; `norm` names a normal texture");
+        report.notice(at, "bump (height) textures are left out; `norm` names a normal texture");
     }
     if mtl.shininess_texture.is_some() {
-        report.notice(&at, "map_Ns is left out; `map_Pr` names a roughness texture");
+        report.notice(at, "map_Ns is left out; `map_Pr` names a roughness texture");
     }
-    m
 }
 
 /// Images by the path that names them, each read once.
@@ -226,11 +232,11 @@ impl Textures<'_> {
         let roughness = roughness.and_then(|t| self.image(t, at, report));
         let mut metallic = metallic.and_then(|t| self.image(t, at, report));
         let get = |i: Option<usize>| i.map(|i| Arc::clone(&self.images[i]));
-        if let (Some(r), Some(m)) = (get(roughness), get(metallic)) {
-            if (r.width, r.height) != (m.width, m.height) {
-                report.notice(at, "map_Pm is left out: its size differs from that of map_Pr");
-                metallic = None;
-            }
+        if let (Some(r), Some(m)) = (get(roughness), get(metallic))
+            && (r.width, r.height) != (m.width, m.height)
+        {
+            report.notice(at, "map_Pm is left out: its size differs from that of map_Pr");
+            metallic = None;
         }
         let size = get(roughness.or(metallic))?;
         if let Err(cause) = self.meter.take_pixels(size.width.into(), size.height.into()) {

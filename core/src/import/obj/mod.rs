@@ -56,7 +56,7 @@ pub(super) fn scene(
         let mesh = mesh(&model, checked.normals_complete);
         let Some(mut mesh) = report.keep(&at, mesh) else { continue };
         shading::complete(&mut mesh, policy, 0).tell(&at, report);
-        let taken = meter.take_instance();
+        let taken = meter.take_instance(mesh.indices.len() as u64 / 3);
         report.keep(&at, taken)?;
         let world_from_local = Affine3A::IDENTITY;
         scene.instances.push(Instance { name: model.name, mesh: scene.meshes.len(), material, world_from_local });

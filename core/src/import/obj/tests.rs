@@ -112,8 +112,8 @@ fn vertex_colours_are_made_linear_and_dropped_when_incomplete() {
 
 #[test]
 fn materials_follow_the_table() {
-    let mtl = "newmtl red\nKd 1 0 0\nNs 198\nKs 0.5 0.25 0\nd 0.5\nnewmtl steel\nPr 0.3\nPm 1\nPc 0.5\nKe 2 2 2\nNi 1.6\n\
-               newmtl broken\nKd 1 0\nNs nan\nKs 0.5\nmap_Kd gone.png\n";
+    let mtl = "newmtl red\nKd 1 0 0\nNs 198\nKs 0.5 0.25 0\nd 0.5\nnewmtl steel\nPr 0.3\nPm 1\nPc 0.5\nKe 2 2 2\n\
+               Ni 1.6\nnewmtl broken\nKd 1 0\nNs nan\nKs 0.5\nmap_Kd gone.png\n";
     let text = format!("mtllib all.mtl\n{QUAD}usemtl red\nf 1 2 3\nusemtl steel\nf 1 3 4\nusemtl unknown\nf 1 2 4\n");
     let imported = read_with(&text, vec![("all.mtl", mtl.into())], ImportOptions::default()).unwrap();
     let materials = &imported.scene.materials;

@@ -48,8 +48,10 @@ pub(super) fn smooth(mesh: &mut Mesh, crease_angle: f32) {
     let point = |corner: usize| points[mesh.indices[corner] as usize];
     let mut groups = Groups::new(mesh.indices.len());
 
-    // Step 1: every edge, with the corner at which it starts, sorted so that its triangles are neighbours.
+    // Step 1: every edge, with the corner at which it starts, sorted so that its triangles are neighbours. Triangles
+    // without area have no direction and would only stand between those that have one.
     let mut edges: Vec<(u32, u32, u32)> = (0..mesh.indices.len())
+        .filter(|corner| faces[corner / 3] != Vec3::ZERO)
         .map(|corner| {
             let (p, q) = (point(corner), point(next(corner)));
             (p.min(q), p.max(q), corner as u32)

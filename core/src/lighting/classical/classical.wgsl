@@ -12,7 +12,7 @@ struct ClassicalLobes {
     samples: u32,
     // Number of bright sources.
     sources: u32,
-    // Offset of the sample points on the unit torus.
+    // Offset of the sample points, see sampling_spiral.
     rotation: vec2f,
     // Levels of the radiance and of the prefiltered cube.
     radiance_levels: f32,
@@ -65,9 +65,9 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32, sources: 
     var sum = vec3f(0.0);
     var weight = 0.0;
     for (var i = 0u; i < n; i++) {
-        let u = sampling_hammersley(i, n);
-        // Half vectors with density D cos; tan^2 = alpha^2 u / (1 - u). Half a step in, so that none is wasted on u = 0.
-        let v = u.x + 0.5 / f32(n);
+        let u = sampling_spiral(i, n, vec2f(0.0, 0.5));
+        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v).
+        let v = u.y;
         let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
         let cos_h = sqrt(cos2);
         let cos_i = 2.0 * cos2 - 1.0;
@@ -75,7 +75,7 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32, sources: 
             continue;
         }
         let sin_i = 2.0 * sqrt(max(0.0, 1.0 - cos2)) * cos_h;
-        let phi = 2.0 * PI * u.y;
+        let phi = 2.0 * PI * u.x;
         let wi = frame_to_world(frame, vec3f(sin_i * cos(phi), sin_i * sin(phi), cos_i));
         let h = vec3f(sqrt(max(0.0, 1.0 - cos2)), 0.0, cos_h);
         let pdf = 0.25 * ggx_distribution(h, vec2f(alpha));
@@ -165,7 +165,7 @@ fn classical_sampled(s: Surface, base: Frame, wo: vec3f, lobes: ClassicalLobes) 
     let g1 = ggx_masking(wo, s.alpha);
     var sum = vec3f(0.0);
     for (var i = 0u; i < lobes.samples; i++) {
-        let u = fract(sampling_hammersley(i, lobes.samples) + lobes.rotation);
+        let u = sampling_spiral(i, lobes.samples, lobes.rotation);
         let wm = ggx_sample_wm(wo, s.alpha, u);
         let wi = reflect(-wo, wm);
         if wi.z <= 0.0 {

@@ -37,7 +37,7 @@ pub trait Maps {
 pub struct Lobes {
     /// 0 for the split sum, else visible normals drawn per pixel.
     pub samples: u32,
-    /// Offset of the sample points on the unit torus.
+    /// Offset of the sample points, see [`sampling::spiral`].
     pub rotation: Vec2,
 }
 
@@ -76,9 +76,9 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[
     let a2 = alpha * alpha;
     let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
     for i in 0..n {
-        let u = sampling::hammersley(i, n);
-        // Half a step in, so that no sample is wasted on u = 0.
-        let v = u.x + 0.5 / n as f32;
+        let u = sampling::spiral(i, n, Vec2::new(0.0, 0.5));
+        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v).
+        let v = u.y;
         let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
         let cos_i = 2.0 * cos2 - 1.0;
         if cos_i <= 0.0 {
@@ -86,7 +86,7 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[
         }
         let sin_h = (1.0 - cos2).max(0.0).sqrt();
         let sin_i = 2.0 * sin_h * cos2.sqrt();
-        let (sin_phi, cos_phi) = (std::f32::consts::TAU * u.y).sin_cos();
+        let (sin_phi, cos_phi) = (std::f32::consts::TAU * u.x).sin_cos();
         let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
         let h = Vec3::new(sin_h, 0.0, cos2.sqrt());
         let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
@@ -200,7 +200,7 @@ fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) 
     let g1 = ggx::masking(wo, s.alpha).max(1e-12);
     let mut sum = Vec3::ZERO;
     for i in 0..lobes.samples {
-        let u = (sampling::hammersley(i, lobes.samples) + lobes.rotation).fract();
+        let u = sampling::spiral(i, lobes.samples, lobes.rotation);
         let wm = ggx::sample_wm(wo, s.alpha, u);
         let wi = 2.0 * wo.dot(wm) * wm - wo;
         if wi.z <= 0.0 {

@@ -7,9 +7,8 @@ use crate::math::sampling;
 use crate::scene::Environment;
 use crate::surface::ggx::{self, Masking};
 
-/// Below this width a reflection is integrated by drawing its lobe, above it by summing texels: the lobe is then wider
-/// than several texels of a 1k map.
-const ALPHA_SUMMED: f32 = 0.03;
+/// A lobe this many texels wide is integrated by summing texels, a narrower one by drawing the lobe.
+const TEXELS_SUMMED: f32 = 5.0;
 /// Points of a lobe that is drawn.
 const LOBE_SAMPLES: u32 = 1 << 14;
 /// Parts along an edge into which a texel near the peak of a lobe is cut.
@@ -90,7 +89,8 @@ impl<'a> Texels<'a> {
     pub fn reflected(&self, normal: Vec3, to_viewer: Vec3, alpha: f32, masking: Masking) -> DVec3 {
         let frame = Frame::new(normal);
         let wo = frame.to_local(to_viewer);
-        if alpha < ALPHA_SUMMED {
+        let texel = std::f32::consts::TAU / self.environment.width as f32;
+        if alpha < TEXELS_SUMMED * texel {
             self.reflected_by_lobe(&frame, wo, Vec2::splat(alpha), masking)
         } else {
             self.reflected_by_texels(&frame, wo, Vec2::splat(alpha), masking)

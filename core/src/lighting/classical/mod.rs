@@ -116,9 +116,14 @@ pub fn prefilter_samples(level: u32) -> u32 {
     256 << level.saturating_sub(1).min(4)
 }
 
-/// Width from which a bright texel of a map of `width` columns is a point to a lobe: three texels.
-pub fn wide_alpha(width: u32) -> f32 {
-    3.0 * std::f32::consts::TAU / width.max(1) as f32
+/// Width from which a block of `block` texels of a map of `width` columns is a point to a lobe: three blocks.
+pub fn wide_alpha(width: u32, block: u32) -> f32 {
+    3.0 * std::f32::consts::TAU * block as f32 / width.max(1) as f32
+}
+
+/// Edge in texels of the blocks that are [`split`] off for shading: a 256th of the map's width, 1.4 degrees.
+pub fn shading_block(width: u32) -> u32 {
+    (width / 256).max(1)
 }
 
 /// Nodes of the cosine weights behind [`mean_fresnel_table`], per masking.

@@ -7,48 +7,81 @@ use glam::{Vec2, Vec3};
 
 use crate::scene::Environment;
 
-/// Sources that are split off at most: they are summed for every texel of the prefiltered levels.
+/// Sources that are split off at most: each is summed for every texel of a prefiltered level, every pixel of a frame.
 pub const SOURCES_MAX: usize = 256;
 
-/// A texel's light above the cap, as a point.
+/// Light that was taken out of a block of texels, as a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// Unit direction in the map's own frame, rotation and strength left out.
     pub direction: Vec3,
-    /// Radiance above the cap times solid angle, in W/m^2 for W/(m^2 sr).
+    /// Radiance that was taken, times its solid angle.
     pub power: Vec3,
 }
 
 /// An environment in two parts that sum to it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Split {
-    /// Channels of the map are to be clamped to this.
-    pub cap: f32,
-    /// What the clamp takes.
+    /// The map with its brightest blocks dimmed to the next one.
+    pub dimmed: Environment,
+    /// What was taken.
     pub sources: Vec<Source>,
 }
 
-/// Splits off the light of the brightest texels above that of the next one.
-pub fn split(environment: &Environment) -> Split {
-    let brightness = |c: &Vec3| c.max_element();
-    let mut values: Vec<f32> = environment.texels.iter().map(brightness).collect();
-    let cap = if values.len() > SOURCES_MAX {
-        *values.select_nth_unstable_by(SOURCES_MAX, |a, b| b.total_cmp(a)).1
+/// Splits off the light of the brightest blocks of `block` by `block` texels above that of the next one.
+pub fn split(environment: &Environment, block: u32) -> Split {
+    let block = block.max(1);
+    let columns = environment.width.div_ceil(block);
+    let blocks: Vec<Block> = (0..environment.height.div_ceil(block))
+        .flat_map(|y| (0..columns).map(move |x| (x, y)))
+        .map(|(x, y)| Block::new(environment, x * block, y * block, block))
+        .collect();
+    let mut means: Vec<f32> = blocks.iter().map(|b| b.mean).collect();
+    let cap = if means.len() > SOURCES_MAX {
+        *means.select_nth_unstable_by(SOURCES_MAX, |a, b| b.total_cmp(a)).1
     } else {
         f32::INFINITY
     };
-    let own_frame = Environment::new("", environment.width, environment.height, Vec::new());
-    let width = environment.width as usize;
-    let mut sources = Vec::new();
-    for (index, texel) in environment.texels.iter().enumerate() {
-        if brightness(texel) > cap {
-            let (x, y) = ((index % width) as u32, (index / width) as u32);
-            let above = (*texel - Vec3::splat(cap)).max(Vec3::ZERO);
-            sources.push(Source {
-                direction: own_frame.texel_direction(x, y, Vec2::splat(0.5)),
-                power: above * environment.texel_solid_angle(y) as f32,
-            });
-        }
+    let mut dimmed = environment.clone();
+    let bright = blocks.iter().filter(|b| b.mean > cap);
+    let sources = bright.filter_map(|b| b.take(&mut dimmed, 1.0 - cap / b.mean)).collect();
+    Split { dimmed, sources }
+}
+
+/// A rectangle of texels.
+struct Block {
+    columns: std::ops::Range<u32>,
+    rows: std::ops::Range<u32>,
+    /// Mean of the largest channel.
+    mean: f32,
+}
+
+impl Block {
+    fn new(map: &Environment, x: u32, y: u32, size: u32) -> Block {
+        let mut block = Block { columns: x..(x + size).min(map.width), rows: y..(y + size).min(map.height), mean: 0.0 };
+        let count = block.columns.len() * block.rows.len();
+        let sum: f32 = block.texels(map).map(|(index, ..)| map.texels[index].max_element()).sum();
+        block.mean = sum / count as f32;
+        block
     }
-    Split { cap, sources }
+
+    /// Index, column and row of each texel.
+    fn texels(&self, map: &Environment) -> impl Iterator<Item = (usize, u32, u32)> + use<> {
+        let (columns, width) = (self.columns.clone(), map.width);
+        self.rows.clone().flat_map(move |y| columns.clone().map(move |x| ((y * width + x) as usize, x, y)))
+    }
+
+    /// Takes a share of the light out of the map; `None` where there is none.
+    fn take(&self, map: &mut Environment, share: f32) -> Option<Source> {
+        let own_frame = Environment::new("", map.width, map.height, Vec::new());
+        let (mut power, mut toward) = (Vec3::ZERO, Vec3::ZERO);
+        for (index, x, y) in self.texels(map) {
+            let taken = share * map.texels[index];
+            map.texels[index] -= taken;
+            let part = taken * map.texel_solid_angle(y) as f32;
+            power += part;
+            toward += part.element_sum() * own_frame.texel_direction(x, y, Vec2::splat(0.5));
+        }
+        Some(Source { direction: toward.try_normalize()?, power })
+    }
 }

@@ -8,12 +8,11 @@ struct Params {
     samples: u32,
     // Factor that brings the source into the range of half floats.
     scale: f32,
-    // Channels of the source are clamped to this.
-    cap: f32,
-    // Sources that the clamp left out.
+    // Sources to add to a filtered level.
     sources: u32,
     pad0: u32,
     pad1: u32,
+    pad2: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -93,7 +92,7 @@ fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < n * n; i++) {
         let offset = (vec2f(f32(i % n), f32(i / n)) + 0.5) / f32(n);
         let direction = face_direction(id.z, (vec2f(id.xy) + offset) / vec2f(size) * 2.0 - 1.0);
-        sum += min(equirectangular_radiance(environment_from_cube(direction)), vec3f(params.cap));
+        sum += equirectangular_radiance(environment_from_cube(direction));
     }
     store(id, sum / f32(n * n) * params.scale);
 }

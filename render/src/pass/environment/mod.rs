@@ -5,6 +5,7 @@
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
@@ -52,9 +53,8 @@ struct Params {
     alpha: f32,
     samples: u32,
     scale: f32,
-    cap: f32,
     sources: u32,
-    pad: [u32; 2],
+    pad: [u32; 3],
 }
 
 /// Pipelines that build [`EnvironmentMaps`].
@@ -105,19 +105,19 @@ impl EnvironmentPass {
 
     /// Builds the cubes; the work is submitted, not awaited.
     pub fn build(&self, gpu: &Gpu, environment: &Environment) -> Result<EnvironmentMaps, RenderError> {
-        let source = upload(gpu, environment)?;
         let face = (environment.width / 2).max(COARSEST).next_power_of_two().clamp(COARSEST, FACE_MAX);
         let levels = face.ilog2() + 1;
         let prefiltered_levels = levels - COARSEST.ilog2();
         let largest = environment.texels.iter().map(|c| c.max_element()).fold(0.0, f32::max);
         let scale = (largest / STORED_MAX).max(1.0);
-        let split = classical::split(environment);
+        let block = classical::shading_block(environment.width);
+        let blocks = classical::split(environment, block);
         let maps = EnvironmentMaps {
             radiance: cube(gpu, "radiance", face, levels),
             dimmed: cube(gpu, "dimmed radiance", face, levels),
-            sources: source_buffer(gpu, &split, scale),
-            source_count: split.sources.len() as u32,
-            wide_alpha: classical::wide_alpha(environment.width),
+            sources: source_buffer(gpu, &blocks.sources, scale),
+            source_count: blocks.sources.len() as u32,
+            wide_alpha: classical::wide_alpha(environment.width, block),
             prefiltered: cube(gpu, "prefiltered", face, prefiltered_levels),
             irradiance: cube(gpu, "irradiance", IRRADIANCE_FACE, 1),
             scale,
@@ -125,25 +125,28 @@ impl EnvironmentPass {
         let steps = Steps {
             pass: self,
             gpu,
-            source: &source,
             blank: &cube(gpu, "blank", 1, 1),
-            bright: &maps.sources,
+            blank_map: &upload(gpu, &Environment::new("blank", 1, 1, vec![Vec3::ZERO]))?,
+            no_sources: &source_buffer(gpu, &[], scale),
             levels,
             scale,
         };
-        steps.run(&self.from_equirectangular, Input::Map { cap: f32::MAX }, (&maps.radiance, 0), Lobe::NONE);
-        steps.downsample(&maps.radiance);
+        steps.fill(&maps.radiance, environment)?;
+        steps.fill(&maps.dimmed, &blocks.dimmed)?;
         steps.run(&self.copy, Input::Level(&maps.radiance, 0), (&maps.prefiltered, 0), Lobe::NONE);
         // Wide lobes are filtered from what is left without the brightest texels, which are added one by one. To a
         // narrow lobe a texel is no point; its samples are dense enough to find every texel.
-        steps.run(&self.from_equirectangular, Input::Map { cap: split.cap }, (&maps.dimmed, 0), Lobe::NONE);
-        steps.downsample(&maps.dimmed);
+        let texels = classical::split(environment, 1);
+        let without_texels = cube(gpu, "radiance without its brightest texels", face, levels);
+        steps.fill(&without_texels, &texels.dimmed)?;
+        let bright = source_buffer(gpu, &texels.sources, scale);
         for level in 1..prefiltered_levels {
             let roughness = classical::roughness(level as f32, prefiltered_levels as f32);
             let alpha = roughness * roughness;
             let samples = classical::prefilter_samples(level);
-            let wide = alpha >= maps.wide_alpha;
-            let (from, sources) = if wide { (&maps.dimmed, maps.source_count) } else { (&maps.radiance, 0) };
+            let wide = alpha >= classical::wide_alpha(environment.width, 1);
+            let (from, sources) =
+                if wide { (&without_texels, Some((&bright, texels.sources.len()))) } else { (&maps.radiance, None) };
             let lobe = Lobe { alpha, samples, sources };
             steps.run(&self.prefilter, Input::Cube(from), (&maps.prefiltered, level), lobe);
         }
@@ -174,8 +177,8 @@ pub fn cube_view(texture: &wgpu::Texture) -> wgpu::TextureView {
 
 /// What a step reads.
 enum Input<'a> {
-    /// The equirectangular map, clamped.
-    Map { cap: f32 },
+    /// An equirectangular map.
+    Map(&'a wgpu::TextureView),
     /// One level of a cube, texel by texel.
     Level(&'a wgpu::Texture, u32),
     /// A whole cube, filtered.
@@ -183,48 +186,49 @@ enum Input<'a> {
 }
 
 /// The lobe that a step filters with.
-struct Lobe {
+struct Lobe<'a> {
     alpha: f32,
     samples: u32,
-    /// Bright sources that are added.
-    sources: u32,
+    /// Bright sources that are added, and how many.
+    sources: Option<(&'a wgpu::Buffer, usize)>,
 }
 
-impl Lobe {
-    const NONE: Lobe = Lobe { alpha: 1.0, samples: 0, sources: 0 };
+impl Lobe<'_> {
+    const NONE: Lobe<'static> = Lobe { alpha: 1.0, samples: 0, sources: None };
 }
 
 /// What all steps of one build share.
 struct Steps<'a> {
     pass: &'a EnvironmentPass,
     gpu: &'a Gpu,
-    source: &'a wgpu::TextureView,
     /// Stands in for what a step does not read; a texture must not be read and written at once.
     blank: &'a wgpu::Texture,
-    bright: &'a wgpu::Buffer,
+    blank_map: &'a wgpu::TextureView,
+    no_sources: &'a wgpu::Buffer,
     levels: u32,
     scale: f32,
 }
 
 impl Steps<'_> {
-    /// Fills the levels of a cube of radiance below the first.
-    fn downsample(&self, cube: &wgpu::Texture) {
+    /// Fills all levels of a cube of radiance from a map.
+    fn fill(&self, cube: &wgpu::Texture, map: &Environment) -> Result<(), RenderError> {
+        let map = upload(self.gpu, map)?;
+        self.run(&self.pass.from_equirectangular, Input::Map(&map), (cube, 0), Lobe::NONE);
         for level in 1..cube.mip_level_count() {
             self.run(&self.pass.downsample, Input::Level(cube, level - 1), (cube, level), Lobe::NONE);
         }
+        Ok(())
     }
 
     fn run(&self, pipeline: &wgpu::ComputePipeline, input: Input, target: (&wgpu::Texture, u32), lobe: Lobe) {
         let device = &self.gpu.device;
-        let cap = if let Input::Map { cap } = input { cap.min(f32::MAX) } else { 0.0 };
         let params = Params {
             levels: self.levels as f32,
             alpha: lobe.alpha,
             samples: lobe.samples,
             scale: 1.0 / self.scale,
-            cap,
-            sources: lobe.sources,
-            pad: [0; 2],
+            sources: lobe.sources.map_or(0, |(_, count)| count as u32),
+            pad: [0; 3],
         };
         let params = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("environment step"),
@@ -239,18 +243,20 @@ impl Steps<'_> {
             Input::Cube(texture) => cube_view(texture),
             _ => cube_view(self.blank),
         };
+        let map = if let Input::Map(map) = input { map } else { self.blank_map };
+        let sources = lobe.sources.map_or(self.no_sources, |(buffer, _)| buffer);
         let target_view = level_view(target.0, target.1);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("environment step"),
             layout: &self.pass.layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: params.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(self.source) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&level) },
                 wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&cube) },
                 wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.pass.sampler) },
                 wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::TextureView(&target_view) },
-                wgpu::BindGroupEntry { binding: 6, resource: self.bright.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 6, resource: sources.as_entire_binding() },
             ],
         });
         let mut encoder = device.create_command_encoder(&Default::default());
@@ -291,9 +297,8 @@ fn cube(gpu: &Gpu, label: &str, face: u32, levels: u32) -> wgpu::Texture {
 }
 
 /// The sources for the shader; never empty.
-fn source_buffer(gpu: &Gpu, split: &classical::Split, scale: f32) -> wgpu::Buffer {
-    let mut data: Vec<SourceData> = split
-        .sources
+fn source_buffer(gpu: &Gpu, sources: &[classical::Source], scale: f32) -> wgpu::Buffer {
+    let mut data: Vec<SourceData> = sources
         .iter()
         .map(|s| SourceData { direction: s.direction, pad0: 0, power: s.power / scale, pad1: 0 })
         .collect();

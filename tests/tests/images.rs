@@ -1,0 +1,69 @@
+//! Rendered pictures of our own scenes against accepted ones, judged by FLIP.
+//!
+//! A picture that differs is written next to its difference under the folder that the failure names.
+//! `BURNISH_ACCEPT=1` accepts what is rendered.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::file::{read_picture, write_png};
+use burnish_core::lighting::classical::PARAMS;
+use burnish_core::measure::{PIXELS_PER_DEGREE, flip};
+use burnish_core::param::Settings;
+use burnish_core::scene::{Scene, gallery};
+use burnish_render::{Gpu, Renderer, View};
+use burnish_tests::{Need, repository, scenes, scratch_folder, trial};
+use glam::UVec2;
+use libtest_mimic::{Arguments, Trial};
+
+const SIZE: UVec2 = UVec2::new(320, 180);
+/// Enough to soften edges; the accepted pictures were made with as many.
+const FRAMES: u32 = 4;
+/// Mean FLIP. Software rasterisers of other processor makers differ by 2 to 3 grey levels.
+const TOLERANCE: f64 = 0.01;
+
+fn main() {
+    let mut arguments = Arguments::from_args();
+    // Each rasterises on all processors by itself.
+    arguments.test_threads.get_or_insert(1);
+    let mut trials = vec![picture("workbench", || gallery::open("gallery:workbench").expect("a gallery scene"))];
+    trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+fn picture(name: &'static str, build: fn() -> Scene) -> Trial {
+    trial(name, &[Need::Gpu], move || compare(name, build()))
+}
+
+fn compare(name: &str, mut scene: Scene) {
+    scene.environment.get_or_insert_with(|| Arc::new(gallery::studio()));
+    let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
+    let camera = scene.cameras.first().expect("a camera").clone();
+    let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: FRAMES };
+    let mut renderer = Renderer::new(&gpu, &scene).unwrap_or_else(|e| panic!("{e}"));
+    let rendered = renderer.render(&view).unwrap_or_else(|e| panic!("{e}"));
+
+    let accepted_path = repository().join("tests/data/images").join(format!("{name}.png"));
+    if std::env::var_os("BURNISH_ACCEPT").is_some() {
+        write_png(&rendered, &accepted_path, ToneMap::Neutral, 0.0).unwrap_or_else(|e| panic!("{e}"));
+        return;
+    }
+    // Both sides as a file holds them.
+    let folder = scratch_folder(&format!("images-{name}"));
+    let actual_path = folder.join("actual.png");
+    write_png(&rendered, &actual_path, ToneMap::Neutral, 0.0).unwrap_or_else(|e| panic!("{e}"));
+    let read = |path: &PathBuf| read_picture(path).unwrap_or_else(|e| panic!("{e}")).0;
+    let error = flip(&read(&accepted_path), &read(&actual_path), 0.0, PIXELS_PER_DEGREE);
+    let error = error.unwrap_or_else(|e| panic!("{e}"));
+    if error.mean > TOLERANCE {
+        let difference = folder.join("difference.png");
+        write_png(&error.picture(), &difference, ToneMap::None, 0.0).unwrap_or_else(|e| panic!("{e}"));
+        panic!(
+            "mean FLIP {:.4} is over {TOLERANCE}; see {}; accept with BURNISH_ACCEPT=1 cargo test --test images",
+            error.mean,
+            folder.display()
+        );
+    }
+    let _ = std::fs::remove_dir_all(&folder);
+}

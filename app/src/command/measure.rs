@@ -23,8 +23,6 @@ use super::write_json;
 use crate::failure::{Exit, Failure};
 use crate::source;
 
-/// Texels of a prefiltered level that are compared at most; drawn with a fixed seed.
-const TEXELS_COMPARED: usize = 400;
 /// Pixels whose normal is nearly perpendicular to the view are left out: there the tessellated ball is not round.
 const COS_MIN: f32 = 0.05;
 
@@ -37,7 +35,7 @@ pub struct Args {
 #[derive(clap::Subcommand)]
 enum What {
     /// Each level of the prefiltered map against the integral it stands for, N = V = R
-    Prefilter(Maps),
+    Prefilter(Levels),
     /// The method on a ball with F = 1 against the exact GGX integral
     Classical(Ball),
 }
@@ -50,6 +48,15 @@ struct Maps {
     /// Write JSON
     #[arg(long)]
     json: bool,
+}
+
+#[derive(clap::Args)]
+struct Levels {
+    #[command(flatten)]
+    maps: Maps,
+    /// Texels of each level that are compared, drawn with a fixed seed; all where a level has fewer
+    #[arg(long, default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..))]
+    texels: u32,
 }
 
 #[derive(clap::Args)]
@@ -81,7 +88,9 @@ struct Row {
 
 pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
     let (maps, rows) = match &args.what {
-        What::Prefilter(maps) => (maps, measure(maps, prefilter)?),
+        What::Prefilter(levels) => {
+            (&levels.maps, measure(&levels.maps, |gpu, environment| prefilter(gpu, environment, levels.texels))?)
+        }
         What::Classical(ball) => {
             (&ball.maps, measure(&ball.maps, |gpu, environment| classical_ball(gpu, environment, ball))?)
         }
@@ -150,11 +159,17 @@ fn ball(environment: &Arc<Environment>, roughness: f32) -> Scene {
     }
 }
 
-fn prefilter(gpu: &Gpu, environment: &Arc<Environment>) -> Result<Vec<Row>, Failure> {
+fn prefilter(gpu: &Gpu, environment: &Arc<Environment>, compared_texels: u32) -> Result<Vec<Row>, Failure> {
     let renderer = Renderer::new(gpu, &ball(environment, 1.0)).map_err(Failure::resources)?;
     let maps = renderer.environment_maps();
     let texels = Texels::new(environment);
     let levels = maps.prefiltered.mip_level_count();
+    if levels < 2 {
+        return Err(Failure::usage(format!(
+            "{}: a map of {}x{} has no prefiltered level to measure; use one that is at least 32 wide",
+            environment.name, environment.width, environment.height
+        )));
+    }
     let mut rows = Vec::new();
     for level in 1..levels {
         let roughness = classical::roughness(level as f32, levels as f32);
@@ -163,7 +178,7 @@ fn prefilter(gpu: &Gpu, environment: &Arc<Environment>) -> Result<Vec<Row>, Fail
         for face in 0..6 {
             faces.push(read_texture(gpu, &maps.prefiltered, level, face).map_err(Failure::resources)?);
         }
-        let pairs: Vec<_> = compared(size)
+        let pairs: Vec<_> = compared(size, compared_texels)
             .into_par_iter()
             .map(|(face, x, y)| {
                 let direction = cube_direction(face, x, y, size);
@@ -178,14 +193,14 @@ fn prefilter(gpu: &Gpu, environment: &Arc<Environment>) -> Result<Vec<Row>, Fail
 }
 
 /// Face, column and row of the texels that are compared: all of a small level, some of a large one.
-fn compared(size: u32) -> Vec<(usize, u32, u32)> {
-    let all = 6 * (size * size) as usize;
+fn compared(size: u32, limit: u32) -> Vec<(usize, u32, u32)> {
+    let (all, limit) = (6 * (size * size) as usize, limit as usize);
     let mut random = Random::new(1);
-    let mut pick = |index: usize| match all <= TEXELS_COMPARED {
+    let mut pick = |index: usize| match all <= limit {
         true => index,
         false => (random.unit() * all as f32) as usize,
     };
-    (0..all.min(TEXELS_COMPARED))
+    (0..all.min(limit))
         .map(|index| {
             let texel = pick(index).min(all - 1) as u32;
             ((texel / (size * size)) as usize, texel % size, texel / size % size)

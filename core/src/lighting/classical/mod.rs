@@ -113,12 +113,17 @@ pub fn roughness(level: f32, levels: f32) -> f32 {
 
 /// Samples for a texel of a prefiltered level: coarse levels have few texels and wide lobes.
 pub fn prefilter_samples(level: u32) -> u32 {
-    256 << level.saturating_sub(1).min(4)
+    64 << level.min(5)
 }
 
-/// Width from which a block of `block` texels of a map of `width` columns is a point to a lobe: three blocks.
+/// Angle that a block of `block` texels of a map of `width` columns fills at the horizon, in radians.
+pub fn block_angle(width: u32, block: u32) -> f32 {
+    std::f32::consts::TAU * block as f32 / width.max(1) as f32
+}
+
+/// Width from which such a block is a point to the lobe of a pixel: three blocks.
 pub fn wide_alpha(width: u32, block: u32) -> f32 {
-    3.0 * std::f32::consts::TAU * block as f32 / width.max(1) as f32
+    3.0 * block_angle(width, block)
 }
 
 /// Edge in texels of the blocks that are [`split`] off for shading: a 256th of the map's width, 1.4 degrees.

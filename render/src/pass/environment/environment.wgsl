@@ -87,7 +87,7 @@ fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
     }
     // Near the poles a texel of the cube covers many columns of the map.
     let center = face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0);
-    let n = select(4u, 12u, abs(center.y) > 0.9);
+    let n = select(2u, 6u, abs(center.y) > 0.9);
     var sum = vec3f(0.0);
     for (var i = 0u; i < n * n; i++) {
         let offset = (vec2f(f32(i % n), f32(i / n)) + 0.5) / f32(n);

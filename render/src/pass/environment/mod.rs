@@ -134,8 +134,8 @@ impl EnvironmentPass {
         steps.fill(&maps.radiance, environment)?;
         steps.fill(&maps.dimmed, &blocks.dimmed)?;
         steps.run(&self.copy, Input::Level(&maps.radiance, 0), (&maps.prefiltered, 0), Lobe::NONE);
-        // Wide lobes are filtered from what is left without the brightest texels, which are added one by one. To a
-        // narrow lobe a texel is no point; its samples are dense enough to find every texel.
+        // Lobes are filtered from what is left without the brightest texels, which are added one by one. To a lobe
+        // narrower than a texel none is a point; its samples are dense enough to find every texel.
         let texels = classical::split(environment, 1);
         let without_texels = cube(gpu, "radiance without its brightest texels", face, levels);
         steps.fill(&without_texels, &texels.dimmed)?;
@@ -144,7 +144,7 @@ impl EnvironmentPass {
             let roughness = classical::roughness(level as f32, prefiltered_levels as f32);
             let alpha = roughness * roughness;
             let samples = classical::prefilter_samples(level);
-            let wide = alpha >= classical::wide_alpha(environment.width, 1);
+            let wide = alpha >= classical::block_angle(environment.width, 1);
             let (from, sources) =
                 if wide { (&without_texels, Some((&bright, texels.sources.len()))) } else { (&maps.radiance, None) };
             let lobe = Lobe { alpha, samples, sources };

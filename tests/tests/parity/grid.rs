@@ -55,7 +55,7 @@ pub fn pairs() -> Vec<(Vec3, Vec3)> {
 /// Points of the unit square, its limits and middle among them.
 pub fn square() -> Vec<Vec2> {
     // The largest is the largest number below one.
-    let u = [0.0, 1e-6, 0.1, 0.25, 0.37, 0.5, 0.62, 0.75, 0.9, 1.0 - f32::EPSILON / 2.0];
+    let u = [0.0, 1e-6, 0.1, 0.25, 0.37, 0.5, 0.62, 0.75, 0.9, 0.98, 1.0 - f32::EPSILON / 2.0];
     u.iter().flat_map(|&x| u.map(|y| Vec2::new(x, y))).collect()
 }
 

@@ -133,7 +133,7 @@ const ENVIRONMENT: &str = "
     let table = parity_curve_albedo(u32(x[3].x), s.masking);
     let base = Frame(x[5].xyz, x[6].xyz, x[7].xyz);
     let coat = Frame(x[8].xyz, x[9].xyz, x[10].xyz);
-    let lobes = ClassicalLobes(u32(x[11].x), 2u, x[11].yz, 9.0, 6.0, 0.2);
+    let lobes = ClassicalLobes(u32(x[11].x), u32(x[11].y), x[11].zw, x[12].x, x[12].y, x[12].z);
     y[0] = vec4f(classical_environment(s, table, base, coat, x[4].xyz, x[4].w, lobes), 0.0);
 ";
 
@@ -156,11 +156,12 @@ fn variants() -> Vec<Variant> {
 }
 
 /// Every surface from every side, with the split sum and with samples, open and occluded.
-fn environment_inputs() -> Vec<[Vec4; 12]> {
+fn environment_inputs() -> Vec<[Vec4; 13]> {
     let base = Frame::with_tangent(Vec3::new(0.36, 0.48, 0.8), Vec3::X);
     let turn = Quat::from_axis_angle(Vec3::new(0.6, -0.8, 0.0), 0.2);
     let coat = Frame { t: turn * base.t, b: turn * base.b, n: turn * base.n };
     let frames = [base.t, base.b, base.n, coat.t, coat.b, coat.n].map(|v| v4(v, 0.0));
+    let maps = Vec4::new(RADIANCE_LEVELS, PREFILTERED_LEVELS, WIDE, 0.0);
     let views: Vec<Vec3> = grid::directions().into_iter().step_by(3).map(|w| base.to_world(w)).collect();
     let mut inputs = Vec::new();
     for (i, variant) in variants().into_iter().enumerate() {
@@ -168,20 +169,20 @@ fn environment_inputs() -> Vec<[Vec4; 12]> {
             let occlusion = [1.0, 0.4, 0.0][(i + j) % 3];
             for samples in [0.0, 16.0] {
                 let head = [&surface::pack(variant)[..], &[v4(*view, occlusion)]].concat();
-                let lobes = Vec4::new(samples, 0.3, 0.7, 0.0);
-                let all = [&head[..], &frames, &[lobes]].concat();
-                inputs.extend(<[Vec4; 12]>::try_from(all));
+                let lobes = Vec4::new(samples, SOURCES.len() as f32, 0.3, 0.7);
+                let all = [&head[..], &frames, &[lobes, maps]].concat();
+                inputs.extend(<[Vec4; 13]>::try_from(all));
             }
         }
     }
     inputs
 }
 
-fn environment(x: &[Vec4; 12]) -> [Vec4; 1] {
+fn environment(x: &[Vec4; 13]) -> [Vec4; 1] {
     let s = surface::unpack(x);
     let curve = &Curves::get().all[x[3].x as usize];
     let table = curve.albedo.as_ref().map(|tables| &tables[s.masking as usize][..]);
     let frame = |i: usize| Frame { t: x[i].xyz(), b: x[i + 1].xyz(), n: x[i + 2].xyz() };
-    let lobes = Lobes { samples: x[11].x as u32, rotation: Vec2::new(x[11].y, x[11].z) };
+    let lobes = Lobes { samples: x[11].x as u32, rotation: x[11].zw() };
     [v4(classical::environment(&Formulas, &s, table, &frame(5), &frame(8), x[4].xyz(), x[4].w, lobes), 0.0)]
 }

@@ -19,6 +19,9 @@ pub fn cases() -> Vec<Case> {
         Case::new("ggx: two directions", leaf, TWO, double, two),
         Case::new("ggx: single and multiple scattering of every curve", leaf, EVAL, colored, eval).with(curves::WGSL),
         Case::new("ggx: sampling of visible normals", leaf, SAMPLE, sampled, sample).within(SHORT),
+        Case::new("ggx: normals at the end of the lobe are unit vectors above the horizon", leaf, END, last, |_| {
+            [Vec4::new(1.0, 1.0, 0.0, 0.0)]
+        }),
         Case::new("ggx: tables of the albedo", leaf, ALBEDO, tabled, tables),
         Case::new("ggx: isotropic and mean albedos", leaf, MEANS, means_inputs, means),
     ]
@@ -60,8 +63,9 @@ const TWO: &str = "
     let wi = x[1].xyz;
     let alpha = x[2].xy;
     let masking = u32(x[2].z);
-    y[0] = vec4f(ggx_microfacet(wo, wi, alpha, masking), ggx_pdf(wo, wi, alpha), ggx_visibility(wo, wi, alpha, masking));
-    y[1].x = ggx_shadowing_masking(wo, wi, alpha, masking);
+    y[0] = vec4f(ggx_microfacet(wo, wi, alpha, masking), ggx_pdf(wo, wi, alpha), 0.0);
+    y[1].x = ggx_visibility(wo, wi, alpha, masking);
+    y[1].y = ggx_shadowing_masking(wo, wi, alpha, masking);
 ";
 
 fn double() -> Vec<[Vec4; 3]> {
@@ -77,8 +81,8 @@ fn double() -> Vec<[Vec4; 3]> {
 fn two(x: &[Vec4; 3]) -> [Vec4; 2] {
     let (wo, wi, alpha, masking) = (x[0].truncate(), x[1].truncate(), alpha(&x[2]), masking(&x[2]));
     let facet = ggx::microfacet(wo, wi, alpha, masking);
-    let g = ggx::shadowing_masking(wo, wi, alpha, masking);
-    [facet.extend(ggx::pdf(wo, wi, alpha)).extend(ggx::visibility(wo, wi, alpha, masking)), crate::grid::one(g)]
+    let (v, g) = (ggx::visibility(wo, wi, alpha, masking), ggx::shadowing_masking(wo, wi, alpha, masking));
+    [v4(facet.extend(ggx::pdf(wo, wi, alpha)), 0.0), Vec4::new(v, g, 0.0, 0.0)]
 }
 
 const EVAL: &str = "
@@ -133,6 +137,24 @@ fn sample(x: &[Vec4; 3]) -> [Vec4; 2] {
     [v4(wm, 0.0), crate::grid::one(ggx::pdf_wm(wo, x[2].truncate(), alpha))]
 }
 
+const END: &str = "
+    let wm = ggx_sample_wm(x[0].xyz, x[1].xy, x[1].zw);
+    y[0].x = length(wm);
+    y[0].y = select(0.0, 1.0, wm.z >= 0.0);
+";
+
+/// The largest u.y, which [`sampled`] leaves out.
+fn last() -> Vec<[Vec4; 2]> {
+    let mut inputs = Vec::new();
+    for wo in grid::directions().into_iter().filter(|w| w.z >= 0.0) {
+        for alpha in ALPHAS {
+            let ends = grid::square().into_iter().filter(|u| u.y > 0.99);
+            inputs.extend(ends.map(|u| [v4(wo, 0.0), alpha.extend(u.x).extend(u.y)]));
+        }
+    }
+    inputs
+}
+
 const ALBEDO: &str = "
     let masking = u32(x[1].z);
     let widths = ggx_toward(x[0].xyz, x[1].xy, vec2f(0.3, 0.8));
@@ -167,7 +189,8 @@ const MEANS: &str = "
     let alpha = x[0].xy;
     let masking = u32(x[0].z);
     let mean = ggx_loss_mean(alpha, masking);
-    y[0] = vec4f(mean, ggx_schlick_mean(alpha, masking), ggx_albedo(x[0].w, alpha.x, masking), ggx_albedo_mean(alpha.y, masking));
+    let isotropic = vec2f(ggx_albedo(x[0].w, alpha.x, masking), ggx_albedo_mean(alpha.y, masking));
+    y[0] = vec4f(mean, ggx_schlick_mean(alpha, masking), isotropic);
     y[1] = vec4f(ggx_bounces(x[1].xyz, x[1].w), 0.0);
 ";
 

@@ -33,10 +33,12 @@ impl Tolerance {
     fn share(self, gpu: f32, cpu: f32) -> f32 {
         let apart = (gpu - cpu).abs();
         let allowed = self.absolute.max(self.relative * cpu.abs());
-        match apart == 0.0 {
-            true => 0.0,
-            false if apart.is_finite() => apart / allowed,
-            false => f32::INFINITY,
+        if apart == 0.0 {
+            0.0
+        } else if apart.is_finite() {
+            apart / allowed
+        } else {
+            f32::INFINITY
         }
     }
 }
@@ -53,8 +55,11 @@ pub struct Case {
     /// Vectors that an input and an output have.
     strides: (usize, usize),
     inputs: Box<dyn Fn() -> Vec<Vec4> + Send>,
-    twin: Box<dyn Fn(&[Vec4]) -> Vec<Vec4> + Send>,
+    twin: Twin,
 }
+
+/// Outputs of one input.
+type Twin = Box<dyn Fn(&[Vec4]) -> Vec<Vec4> + Send>;
 
 impl Case {
     /// `body` is WGSL that reads `x: array<vec4f, I>` and writes `y: array<vec4f, O>`; `twin` says in Rust what it must
@@ -129,7 +134,7 @@ impl Case {
             let (gpu, cpu, x) = (gpu[*index][*c], cpu[*index][*c], &inputs[index / o * i..][..i]);
             let (y, ratio) = (index % o, gpu / cpu);
             report += &format!(
-                "y[{y}].{}: WGSL {gpu:e}, Rust {cpu:e}, ratio {ratio}, {share} times what is allowed, for x =\n  {x:?}\n",
+                "y[{y}].{}: WGSL {gpu:e}, Rust {cpu:e}, ratio {ratio}, {share} times the tolerance, for x =\n  {x:?}\n",
                 ["x", "y", "z", "w"][*c],
             );
         }

@@ -58,11 +58,11 @@ impl Tables {
 impl Metal {
     fn of_base_color(f0: Vec3) -> Metal {
         let fresnel = Fresnel::Rescaled { f0 };
-        Metal { form: form(&fresnel), f0, n: Vec3::ONE, k: Vec3::ZERO, mean: fresnel.mean(), table: 0, albedo_table: 0 }
+        Metal { form: fresnel.form(), f0, n: Vec3::ONE, k: Vec3::ZERO, mean: fresnel.mean(), table: 0, albedo_table: 0 }
     }
 
     fn new(fresnel: &Fresnel, masking: Masking, floats: &mut Vec<f32>) -> Metal {
-        let mut metal = Metal { form: form(fresnel), mean: fresnel.mean(), ..Metal::of_base_color(fresnel.f0()) };
+        let mut metal = Metal { form: fresnel.form(), mean: fresnel.mean(), ..Metal::of_base_color(fresnel.f0()) };
         match fresnel {
             Fresnel::Rescaled { .. } | Fresnel::Schlick { .. } => return metal,
             Fresnel::Conductor { n, k } => {
@@ -77,15 +77,5 @@ impl Metal {
         metal.albedo_table = floats.len() as u32;
         floats.extend(classical::mean_fresnel_table(fresnel, masking));
         metal
-    }
-}
-
-/// Code of the form in `fresnel.wgsl`.
-fn form(fresnel: &Fresnel) -> u32 {
-    match fresnel {
-        Fresnel::Rescaled { .. } => 0,
-        Fresnel::Schlick { .. } => 1,
-        Fresnel::Conductor { .. } => 2,
-        Fresnel::Spectral { .. } => 3,
     }
 }

@@ -1,7 +1,13 @@
 //! Every WGSL file of the project, checked without a GPU: it parses and validates, the structs and constants that
 //! both languages declare agree, and a leaf stays a leaf.
 
+use std::f32::consts;
+
+use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
+use burnish_core::lighting::classical;
+use burnish_core::surface::ggx::{self, Masking, albedo};
+use burnish_core::surface::{coat, fresnel};
 use burnish_render::layout::types::{CONSTANTS, STRUCTS};
 use burnish_render::shader;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -90,19 +96,28 @@ fn shared_structs_have_the_same_names_offsets_and_sizes() {
     }
 }
 
-/// Value of a module constant as a number.
+/// Value of a module constant as a number. naga has folded expressions; a copy of another constant is followed.
 fn constant(module: &naga::Module, name: &str) -> f64 {
     let (_, constant) = module
         .constants
         .iter()
         .find(|(_, c)| c.name.as_deref() == Some(name))
         .unwrap_or_else(|| panic!("no WGSL constant {name}"));
-    match module.global_expressions[constant.init] {
-        naga::Expression::Literal(naga::Literal::U32(v)) => f64::from(v),
-        naga::Expression::Literal(naga::Literal::I32(v)) => f64::from(v),
-        naga::Expression::Literal(naga::Literal::F32(v)) => f64::from(v),
-        ref other => panic!("{name} is {other:?}, not a number"),
+    let mut expression = constant.init;
+    loop {
+        expression = match module.global_expressions[expression] {
+            naga::Expression::Constant(other) => module.constants[other].init,
+            naga::Expression::Literal(naga::Literal::U32(v)) => return f64::from(v),
+            naga::Expression::Literal(naga::Literal::I32(v)) => return f64::from(v),
+            naga::Expression::Literal(naga::Literal::F32(v)) => return f64::from(v),
+            ref other => panic!("{name} is {other:?}, not a number"),
+        };
     }
+}
+
+/// Names of all module constants.
+fn constants(module: &naga::Module) -> Vec<String> {
+    module.constants.iter().filter_map(|(_, c)| c.name.clone()).collect()
 }
 
 #[test]
@@ -110,5 +125,61 @@ fn constants_of_both_languages_are_equal() {
     let types = validated("types", include_str!("../../render/src/layout/types.wgsl"));
     for (name, value) in CONSTANTS {
         assert_eq!(constant(&types, name), f64::from(*value), "{name}");
+    }
+}
+
+/// Constants of a leaf with their namesakes in Rust; every constant of every leaf is here.
+fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
+    match leaf {
+        "math" => vec![("PI", consts::PI.into()), ("INV_PI", consts::FRAC_1_PI.into())],
+        "tone" => vec![
+            ("TONE_NONE", ToneMap::None.number().into()),
+            ("TONE_NEUTRAL", ToneMap::Neutral.number().into()),
+            ("TONE_AGX", ToneMap::AgX.number().into()),
+            ("TONE_ACES", ToneMap::Aces.number().into()),
+            ("MAX_LINEAR", tone::MAX_LINEAR.into()),
+        ],
+        "fresnel" => vec![
+            ("FRESNEL_RESCALED", fresnel::RESCALED.into()),
+            ("FRESNEL_SCHLICK", fresnel::SCHLICK.into()),
+            ("FRESNEL_CONDUCTOR", fresnel::CONDUCTOR.into()),
+            ("FRESNEL_SPECTRAL", fresnel::SPECTRAL.into()),
+            ("FRESNEL_TABLE_SIZE", fresnel::TABLE_SIZE as f64),
+            ("FRESNEL_INDEX_MIN", fresnel::INDEX_MIN.into()),
+            ("FRESNEL_INDEX_MAX", fresnel::INDEX_MAX.into()),
+        ],
+        "ggx" => vec![
+            ("GGX_ALPHA_MIN", ggx::ALPHA_MIN.into()),
+            ("GGX_CORRELATED", f64::from(Masking::Correlated as u32)),
+            ("GGX_SEPARABLE", f64::from(Masking::Separable as u32)),
+            ("GGX_ALBEDO_MU", albedo::ALBEDO_MU.into()),
+            ("GGX_ALBEDO_ALPHA", albedo::ALBEDO_ALPHA.into()),
+            ("GGX_ALBEDO_LOSS_MEAN", albedo::ALBEDO_LOSS_MEAN.into()),
+            ("GGX_ALBEDO_SCHLICK", albedo::ALBEDO_SCHLICK.into()),
+            ("GGX_ALBEDO_SCHLICK_MEAN", albedo::ALBEDO_SCHLICK_MEAN.into()),
+            ("GGX_ALBEDO_STRIDE", albedo::ALBEDO_STRIDE.into()),
+            ("GGX_ALBEDO_ROOT_MIN", albedo::ALBEDO_ROOT_MIN.into()),
+            ("GGX_ALBEDO_LOSS_NARROWING", albedo::ALBEDO_LOSS_NARROWING.into()),
+            ("GGX_ALBEDO_SCHLICK_NARROWING", albedo::ALBEDO_SCHLICK_NARROWING.into()),
+        ],
+        "coat" => vec![("COAT_F0", coat::F0.into())],
+        "classical" => vec![("CLASSICAL_OVERLAP", classical::OVERLAP.into())],
+        _ => Vec::new(),
+    }
+}
+
+#[test]
+fn every_constant_of_a_leaf_equals_its_rust_namesake() {
+    for leaf in leaf::all() {
+        let module = validated(leaf.name, &source_of(leaf));
+        let of_needs: Vec<_> =
+            leaf.needs.iter().flat_map(|need| constants(&validated(need.name, &source_of(need)))).collect();
+        let twins = twins(leaf.name);
+        for name in constants(&module).iter().filter(|name| !of_needs.contains(name)) {
+            assert!(twins.iter().any(|(twin, _)| twin == name), "{name} of `{}` has no Rust twin here", leaf.name);
+        }
+        for (name, value) in twins {
+            assert_eq!(constant(&module, name), value, "{name} of `{}`", leaf.name);
+        }
     }
 }

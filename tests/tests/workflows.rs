@@ -309,11 +309,11 @@ fn doctor_finds_the_adapter() {
     assert!(doctor.contains("accepted") && doctor.contains("texture"), "{doctor}");
 }
 
-/// A 4 by 2 environment in the Radiance format, one grey for all directions: prepared in no time, unlike the studio.
+/// A 32 by 16 environment in the Radiance format, one grey for all directions: prepared in no time, unlike the studio.
 fn grey_environment(folder: &Path) -> PathBuf {
-    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n".to_vec();
     // Mantissas of 128 / 256 times 2^(129 - 128).
-    bytes.extend([128, 128, 128, 129].repeat(8));
+    bytes.extend([128, 128, 128, 129].repeat(16 * 32));
     let file = folder.join("studio.hdr");
     fs::write(&file, bytes).expect("a writable folder");
     file

@@ -68,8 +68,10 @@ fn sampling_disk(u: vec2f) -> vec2f {
 
 // Direction with density cos(theta) / pi about z.
 fn sampling_cosine_hemisphere(u: vec2f) -> vec3f {
-    let d = sampling_disk(u);
-    return vec3f(d, sqrt(max(0.0, 1.0 - dot(d, d))));
+    // Radius on the disk, from which the cosine keeps its digits at the rim.
+    let p = abs(2.0 * u - 1.0);
+    let r = max(p.x, p.y);
+    return vec3f(sampling_disk(u), sqrt((1.0 - r) * (1.0 + r)));
 }
 
 // Bits of i mirrored at the binary point, in [0, 1).

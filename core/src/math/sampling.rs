@@ -24,8 +24,9 @@ pub fn disk(u: Vec2) -> Vec2 {
 
 /// Direction with density `cos(theta) / pi` about z.
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
-    let d = disk(u);
-    d.extend((1.0 - d.length_squared()).max(0.0).sqrt())
+    // Radius on the disk, from which the cosine keeps its digits at the rim.
+    let r = (2.0 * u - 1.0).abs().max_element();
+    disk(u).extend(((1.0 - r) * (1.0 + r)).sqrt())
 }
 
 /// Bits of `i` mirrored at the binary point, in [0, 1).

@@ -66,18 +66,18 @@ fn classical_prefilter(normal: vec3f, alpha: f32, n: u32, levels: f32, sources: 
     var weight = 0.0;
     for (var i = 0u; i < n; i++) {
         let u = sampling_spiral(i, n, vec2f(0.0, 0.5));
-        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v).
-        let v = u.y;
-        let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
-        let cos_h = sqrt(cos2);
-        let cos_i = 2.0 * cos2 - 1.0;
+        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v). The sine from v too: 1 - cos^2 would cancel.
+        let sum2 = (1.0 - u.y) + a2 * u.y;
+        let cos2 = (1.0 - u.y) / sum2;
+        let sin2 = a2 * u.y / sum2;
+        let cos_i = cos2 - sin2;
         if cos_i <= 0.0 {
             continue;
         }
-        let sin_i = 2.0 * sqrt(max(0.0, 1.0 - cos2)) * cos_h;
+        let h = vec3f(sqrt(sin2), 0.0, sqrt(cos2));
+        let sin_i = 2.0 * h.x * h.z;
         let phi = 2.0 * PI * u.x;
         let wi = frame_to_world(frame, vec3f(sin_i * cos(phi), sin_i * sin(phi), cos_i));
-        let h = vec3f(sqrt(max(0.0, 1.0 - cos2)), 0.0, cos_h);
         let pdf = 0.25 * ggx_distribution(h, vec2f(alpha));
         let level = classical_footprint(wi, pdf, n, levels, CLASSICAL_OVERLAP);
         sum += cos_i * classical_radiance(wi, level);

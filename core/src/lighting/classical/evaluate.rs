@@ -77,18 +77,17 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[
     let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
     for i in 0..n {
         let u = sampling::spiral(i, n, Vec2::new(0.0, 0.5));
-        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v).
-        let v = u.y;
-        let cos2 = (1.0 - v) / (1.0 + (a2 - 1.0) * v);
-        let cos_i = 2.0 * cos2 - 1.0;
+        // Half vectors with density D cos: tan^2 = alpha^2 v / (1 - v). The sine from v too: 1 - cos^2 would cancel.
+        let sum2 = (1.0 - u.y) + a2 * u.y;
+        let (cos2, sin2) = ((1.0 - u.y) / sum2, a2 * u.y / sum2);
+        let cos_i = cos2 - sin2;
         if cos_i <= 0.0 {
             continue;
         }
-        let sin_h = (1.0 - cos2).max(0.0).sqrt();
-        let sin_i = 2.0 * sin_h * cos2.sqrt();
+        let h = Vec3::new(sin2.sqrt(), 0.0, cos2.sqrt());
+        let sin_i = 2.0 * h.x * h.z;
         let (sin_phi, cos_phi) = (std::f32::consts::TAU * u.x).sin_cos();
         let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
-        let h = Vec3::new(sin_h, 0.0, cos2.sqrt());
         let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
         let level = footprint(wi, pdf, n, levels, OVERLAP);
         sum += cos_i * maps.radiance(wi, level);

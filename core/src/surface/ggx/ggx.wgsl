@@ -98,10 +98,11 @@ fn ggx_eval(wo: vec3f, wi: vec3f, alpha: vec2f, fresnel: Fresnel, masking: u32) 
 fn ggx_sample_wm(wo: vec3f, alpha: vec2f, u: vec2f) -> vec3f {
     let a = ggx_clamp_alpha(alpha);
     let stretched = normalize(vec3f(a * wo.xy, wo.z));
-    let z = 1.0 - u.y * (1.0 + stretched.z);
-    let sin_theta = sqrt(clamp((1.0 - z) * (1.0 + z), 0.0, 1.0));
+    // The cap reaches from z = 1 down to -stretched.z. `below` is 1 - z, and h.z = z + stretched.z: no digit is lost.
+    let below = u.y * (1.0 + stretched.z);
+    let sin_theta = sqrt(clamp(below * (2.0 - below), 0.0, 1.0));
     let phi = 2.0 * PI * u.x;
-    let h = vec3f(sin_theta * cos(phi), sin_theta * sin(phi), z) + stretched;
+    let h = vec3f(sin_theta * vec2f(cos(phi), sin(phi)) + stretched.xy, (1.0 - u.y) * (1.0 + stretched.z));
     return normalize(vec3f(a * h.xy, max(h.z, 1e-20)));
 }
 

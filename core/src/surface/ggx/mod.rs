@@ -152,9 +152,10 @@ pub fn eval(wo: Vec3, wi: Vec3, alpha: Vec2, fresnel: &Fresnel, masking: Masking
 pub fn sample_wm(wo: Vec3, alpha: Vec2, u: Vec2) -> Vec3 {
     let a = clamp_alpha(alpha);
     let view = (a * wo.xy()).extend(wo.z).normalize();
-    let z = 1.0 - u.y * (1.0 + view.z);
-    let sin_theta = ((1.0 - z) * (1.0 + z)).clamp(0.0, 1.0).sqrt();
-    let h = (sin_theta * Vec2::from_angle(TAU * u.x)).extend(z) + view;
+    // The cap reaches from z = 1 down to -view.z. `below` is 1 - z, and h.z = z + view.z: no digit is lost.
+    let below = u.y * (1.0 + view.z);
+    let sin_theta = (below * (2.0 - below)).clamp(0.0, 1.0).sqrt();
+    let h = (sin_theta * Vec2::from_angle(TAU * u.x) + view.xy()).extend((1.0 - u.y) * (1.0 + view.z));
     (a * h.xy()).extend(h.z.max(1e-20)).normalize()
 }
 

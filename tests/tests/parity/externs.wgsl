@@ -1,0 +1,46 @@
+// What leaves ask of a pass, from a buffer or by formula. Rust twins: curves.rs and the maps of classical.rs.
+
+@group(0) @binding(0) var<storage, read> parity_inputs: array<vec4f>;
+@group(0) @binding(1) var<storage, read_write> parity_outputs: array<vec4f>;
+// The albedo tables, the curves' fields, the curves' tables.
+@group(0) @binding(2) var<storage, read> parity_table: array<f32>;
+
+fn parity_vec3(at: u32) -> vec3f {
+    return vec3f(parity_table[at], parity_table[at + 1u], parity_table[at + 2u]);
+}
+
+fn ggx_albedo_entry(index: u32) -> f32 {
+    return parity_table[index];
+}
+
+fn fresnel_table(table: u32, entry: u32) -> vec3f {
+    return parity_vec3(table + 3u * entry);
+}
+
+// Light that depends on the direction and falls with the level.
+fn parity_light(d: vec3f, level: f32) -> vec3f {
+    return vec3f(1.2 + d.x, 1.5 + d.y * d.z, 1.3 - 0.8 * d.z) / (1.0 + 0.2 * level);
+}
+
+fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
+    return parity_light(direction, level);
+}
+
+fn classical_dimmed(direction: vec3f, level: f32) -> vec3f {
+    return 0.7 * parity_light(direction.yzx, level);
+}
+
+fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f {
+    return parity_light(direction.zxy, 2.0 * level);
+}
+
+fn classical_irradiance(direction: vec3f) -> vec3f {
+    return 3.0 * parity_light(direction, 1.0);
+}
+
+fn classical_source(index: u32) -> mat2x3f {
+    if index == 0u {
+        return mat2x3f(vec3f(0.48, 0.6, 0.64), vec3f(0.3, 0.2, 0.1));
+    }
+    return mat2x3f(vec3f(-0.64, 0.48, 0.6), vec3f(0.05, 0.1, 0.15));
+}

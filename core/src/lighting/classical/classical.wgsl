@@ -144,7 +144,9 @@ fn classical_bent_normal(base: Frame, wo_world: vec3f, alpha: vec2f) -> vec3f {
 fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f32) -> vec3f {
     let wo_world = frame_to_world(base, wo);
     let n = classical_bent_normal(base, wo_world, s.alpha);
-    let direction = reflect(-wo_world, n);
+    // Wide lobes lean toward the normal, where the cosine is larger. The weight was chosen by the error table.
+    let lean = s.alpha.x * s.alpha.y;
+    let direction = normalize(mix(reflect(-wo_world, n), n, lean));
     let roughness = sqrt(sqrt(s.alpha.x * s.alpha.y));
     var albedo = vec3f(0.0);
     if s.metallic > 0.0 {

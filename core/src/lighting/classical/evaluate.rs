@@ -159,7 +159,9 @@ fn facing(wo: Vec3) -> Vec3 {
 fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame, wo: Vec3) -> Vec3 {
     let wo_world = base.to_world(wo);
     let n = bent_normal(base, wo_world, s.alpha);
-    let direction = 2.0 * n.dot(wo_world) * n - wo_world;
+    // Wide lobes lean toward the normal, where the cosine is larger. The weight was chosen by the error table.
+    let lean = s.alpha.x * s.alpha.y;
+    let direction = (2.0 * n.dot(wo_world) * n - wo_world).lerp(n, lean).normalize();
     let roughness = (s.alpha.x * s.alpha.y).sqrt().sqrt();
     let width = width(s.alpha);
     let e = 1.0 - loss(wo, s.alpha, s.masking);

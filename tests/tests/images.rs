@@ -11,6 +11,7 @@ use burnish_core::file::{read_picture, write_png};
 use burnish_core::lighting::classical::PARAMS;
 use burnish_core::measure::{PIXELS_PER_DEGREE, flip};
 use burnish_core::param::Settings;
+use burnish_core::picture::Picture;
 use burnish_core::scene::{Scene, gallery};
 use burnish_render::{Gpu, Renderer, View};
 use burnish_tests::{Need, repository, scenes, scratch_folder, trial};
@@ -28,6 +29,7 @@ fn main() {
     // Each rasterises on all processors by itself.
     arguments.test_threads.get_or_insert(1);
     let mut trials = vec![picture("workbench", || gallery::open("gallery:workbench").expect("a gallery scene"))];
+    trials.push(trial("a normal map bends the normal as the mesh would, on both sides", &[Need::Gpu], both_sides));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -36,13 +38,31 @@ fn picture(name: &'static str, build: fn() -> Scene) -> Trial {
     trial(name, &[Need::Gpu], move || compare(name, build()))
 }
 
+fn both_sides() {
+    let [mapped, shaped] = [true, false].map(|mapped| render(&scenes::bent_square(mapped), usize::MAX));
+    assert_eq!(mapped.len(), 2);
+    for (side, (mapped, shaped)) in ["front", "back"].iter().zip(mapped.iter().zip(&shaped)) {
+        for (a, b) in mapped.texels.iter().zip(&shaped.texels) {
+            // Rounding of the half floats and of the packed normals that both go through.
+            assert!(a.abs_diff_eq(*b, 0.01 * b.max_element()), "{a} is not {b}, seen from the {side}");
+        }
+    }
+}
+
+/// The scene from its first so many cameras.
+fn render(scene: &Scene, cameras: usize) -> Vec<Picture> {
+    let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
+    let mut renderer = Renderer::new(&gpu, scene).unwrap_or_else(|e| panic!("{e}"));
+    let pictures = scene.cameras.iter().take(cameras).map(|camera| {
+        let view = View { size: SIZE, camera: camera.clone(), settings: Settings::new(PARAMS), jitter_frames: FRAMES };
+        renderer.render(&view).unwrap_or_else(|e| panic!("{e}"))
+    });
+    pictures.collect()
+}
+
 fn compare(name: &str, mut scene: Scene) {
     scene.environment.get_or_insert_with(|| Arc::new(gallery::studio()));
-    let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
-    let camera = scene.cameras.first().expect("a camera").clone();
-    let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: FRAMES };
-    let mut renderer = Renderer::new(&gpu, &scene).unwrap_or_else(|e| panic!("{e}"));
-    let rendered = renderer.render(&view).unwrap_or_else(|e| panic!("{e}"));
+    let rendered = render(&scene, 1).pop().expect("a camera");
 
     let accepted_path = repository().join("tests/data/images").join(format!("{name}.png"));
     if std::env::var_os("BURNISH_ACCEPT").is_some() {

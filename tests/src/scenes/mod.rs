@@ -4,10 +4,12 @@
 mod lights_and_alpha;
 mod stage;
 
+use std::sync::Arc;
+
 use burnish_core::{
     material::Material,
     scene::{
-        Scene,
+        Camera, Environment, Scene,
         gallery::shape::{self, Profile},
     },
 };
@@ -116,6 +118,31 @@ pub fn layers() -> Scene {
     stage.place(hook, brushed, cell(3, 5, 3, 4) * Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)));
     stage.sun(Vec3::new(-0.4, -0.7, -0.6), 1.5);
     stage.finish(Vec3::new(0.0, 0.1, 2.3), 0.37)
+}
+
+/// A square that fills the view of a camera in front and of one behind. Its normal is bent by a normal map or, the same
+/// way, in the mesh.
+pub fn bent_square(mapped: bool) -> Scene {
+    let mut stage = Stage::new("bent_square");
+    let bent = [200, 160, 220, 255];
+    let map = stage.image("bent", 1, |_, _| bent);
+    let mut square = shape::plane(2.0, 2.0);
+    let mut material = Material { double_sided: true, ..metal(SILVER, 0.3) };
+    if mapped {
+        material.normal_texture = Some(texture(map));
+    } else {
+        let normal = Vec3::from_array([0, 1, 2].map(|i| f32::from(bent[i]) / 127.5 - 1.0)).normalize();
+        square.normals.fill(normal);
+        square.tangents.fill(normal.cross(Vec3::X).normalize().extend(1.0));
+    }
+    let material = stage.material(material);
+    stage.put(square, material, Affine3A::IDENTITY);
+    // No two directions are alike, and the map is small: it is quick to filter.
+    let sky = (0..16 * 8).map(|i| Vec3::new((i % 16) as f32, (i / 16) as f32, 4.0)).collect();
+    let mut scene = stage.finish(Vec3::new(0.3, 0.4, 3.0), 0.3);
+    scene.environment = Some(Arc::new(Environment::new("sky", 16, 8, sky)));
+    scene.cameras.push(Camera::look_at("behind", Vec3::new(0.3, 0.4, -3.0), Vec3::ZERO, 0.3));
+    scene
 }
 
 /// A ball whose vertices are coloured by their normals.

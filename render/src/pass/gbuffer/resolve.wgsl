@@ -188,17 +188,18 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     let s = sample_textures(material, c);
     let to_viewer = view.viewer.xyz - in.position * view.viewer.w;
 
+    // The frame of the front. Seen from behind, the bent normal turns round as a whole: a bump is a dent there.
     let side = select(-1.0, 1.0, front_facing);
-    let n = side * safe_normalize(in.normal, vec3f(0.0, 1.0, 0.0));
+    let n = safe_normalize(in.normal, vec3f(0.0, 1.0, 0.0));
     let any = frame_new(n).t;
     let t = safe_normalize(in.tangent.xyz - n * dot(n, in.tangent.xyz), any);
-    let b = cross(n, t) * (in.tangent.w * side);
+    let b = cross(n, t) * in.tangent.w;
 
     var texel: Texel;
     texel.id = in.instance + 1u;
-    texel.normal = perturbed(s.normal, m.normal_scale, n, t, b);
-    texel.coat_normal = perturbed(s.coat_normal, m.coat_normal_scale, n, t, b);
-    let geometric = safe_normalize(face, n);
+    texel.normal = side * perturbed(s.normal, m.normal_scale, n, t, b);
+    texel.coat_normal = side * perturbed(s.coat_normal, m.coat_normal_scale, n, t, b);
+    let geometric = safe_normalize(face, side * n);
     texel.geometric_normal = select(-geometric, geometric, dot(geometric, to_viewer) >= 0.0);
 
     let turn = vec2f(cos(m.anisotropy_rotation), sin(m.anisotropy_rotation));

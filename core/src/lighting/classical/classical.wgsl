@@ -124,10 +124,11 @@ fn classical_fresnel(s: Surface, cos_theta: f32) -> vec3f {
     return value;
 }
 
-// Normal bent toward the axis along which an anisotropic lobe is narrow, which stretches the one lookup of the split sum.
+// Normal bent toward the viewer in the plane in which an anisotropic lobe is wide, which stretches the one lookup of the
+// split sum; across the narrow axis the reflection stays that of a mirror.
 fn classical_bent_normal(base: Frame, wo_world: vec3f, alpha: vec2f) -> vec3f {
     let along = alpha.x >= alpha.y;
-    let axis = select(base.b, base.t, along);
+    let axis = select(base.t, base.b, along);
     let wide = max(alpha.x, alpha.y);
     let narrow = min(alpha.x, alpha.y);
     let side = cross(axis, wo_world);

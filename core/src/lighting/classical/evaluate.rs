@@ -231,10 +231,12 @@ fn shared_fresnel(s: &Surface, cos_theta: f32) -> Vec3 {
     s.metallic * s.fresnel.eval(cos_theta) + (1.0 - s.metallic) * dielectric
 }
 
-/// Normal bent toward the viewer about the axis along which the lobe is wide, which stretches the one lookup of the
-/// split sum. After McAuley 2015, Rendering the World of Far Cry 4.
+/// Normal bent toward the viewer in the plane in which the lobe is wide, which stretches the one lookup of the split
+/// sum; across the narrow axis the reflection stays that of a mirror.
+///
+/// After McAuley 2015, Rendering the World of Far Cry 4.
 fn bent_normal(base: &Frame, wo_world: Vec3, alpha: Vec2) -> Vec3 {
-    let axis = if alpha.x >= alpha.y { base.t } else { base.b };
+    let axis = if alpha.x >= alpha.y { base.b } else { base.t };
     let (wide, narrow) = (alpha.max_element(), alpha.min_element());
     let toward = axis.cross(wo_world).cross(axis);
     if toward.length_squared() < 1e-8 || wide <= narrow {
@@ -256,4 +258,22 @@ fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
 /// Lagarde and de Rousiers 2014, Moving Frostbite to Physically Based Rendering, section 4.10.2.
 fn reflection_occlusion(mu: f32, alpha: f32, occlusion: f32) -> f32 {
     ((mu + occlusion).powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + occlusion).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bent_normal_leaves_the_plane_of_the_narrow_axis_a_mirror() {
+        let frame = Frame::new(Vec3::Y);
+        for (alpha, wide, narrow) in
+            [(Vec2::new(0.5, 0.05), frame.t, frame.b), (Vec2::new(0.05, 0.5), frame.b, frame.t)]
+        {
+            let bent = |toward: Vec3| bent_normal(&frame, (toward + frame.n).normalize(), alpha);
+            assert!(bent(narrow).abs_diff_eq(frame.n, 1e-6), "{}", bent(narrow));
+            let n = bent(wide);
+            assert!(n.dot(wide) > 0.1 && n.dot(narrow).abs() < 1e-6, "{n}");
+        }
+    }
 }

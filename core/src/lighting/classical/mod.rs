@@ -121,9 +121,9 @@ pub fn block_angle(width: u32, block: u32) -> f32 {
     std::f32::consts::TAU * block as f32 / width.max(1) as f32
 }
 
-/// Width from which such a block is a point to the lobe of a pixel: three blocks.
+/// Width from which such a block is a point to the lobe of a pixel: one and a half blocks.
 pub fn wide_alpha(width: u32, block: u32) -> f32 {
-    3.0 * block_angle(width, block)
+    1.5 * block_angle(width, block)
 }
 
 /// Edge in texels of the blocks that are [`split`] off for shading: a 256th of the map's width, 1.4 degrees.

@@ -8,7 +8,6 @@ use burnish_core::scene::{Camera, Projection, Scene};
 use burnish_core::surface::ggx::Masking;
 use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
-use wgpu::util::DeviceExt;
 
 use crate::device::{Gpu, GpuError};
 use crate::layout::types::ViewData;
@@ -113,11 +112,7 @@ fn frame_format(gpu: &Gpu) -> wgpu::TextureFormat {
 }
 
 fn tables_buffer(gpu: &Gpu, tables: &Tables) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("tables"),
-        contents: bytemuck::cast_slice(&tables.floats),
-        usage: wgpu::BufferUsages::STORAGE,
-    })
+    gpu.buffer("tables", bytemuck::cast_slice(&tables.floats), wgpu::BufferUsages::STORAGE)
 }
 
 impl Renderer {
@@ -229,11 +224,7 @@ impl Renderer {
         targets: &mut Targets,
     ) {
         let data = self.view_data(view, settings, frame, frames);
-        let uniform = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("view"),
-            contents: bytemuck::bytes_of(&data),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = self.gpu.buffer("view", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let scene = self.gpu_scene.group(&self.gpu.device, &self.passes.scene_layout, &uniform);
         self.passes.gbuffer.encode(encoder, &targets.gbuffer, &self.gpu_scene, &scene);
         self.passes.classical.encode(encoder, &targets.frame, [&scene, &targets.gbuffer_group, &self.lights]);

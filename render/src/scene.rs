@@ -3,7 +3,6 @@
 use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRef};
 use burnish_core::scene::Scene;
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
-use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
 use crate::layout::types::{
@@ -137,21 +136,15 @@ impl GpuScene {
             instances.push(instance_data(Mat4::IDENTITY, 0));
         }
         check_size(gpu, "instances", size_of_val(instances.as_slice()) as u64)?;
-        let buffer = |label, contents: &[u8]| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(label),
-                contents,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            })
-        };
+        let storage = wgpu::BufferUsages::STORAGE;
         let mut cache = TextureCache::new(gpu);
         let material_groups =
             scene.materials.iter().map(|m| material_group(gpu, layout, scene, m, &mut cache)).collect();
         Ok(GpuScene {
             vertices,
             indices,
-            instances: buffer("instances", bytemuck::cast_slice(&instances)),
-            materials: buffer("materials", bytemuck::cast_slice(&material_list(scene, tables))),
+            instances: gpu.buffer("instances", bytemuck::cast_slice(&instances), storage),
+            materials: gpu.buffer("materials", bytemuck::cast_slice(&material_list(scene, tables)), storage),
             material_groups,
             draws,
         })
@@ -210,12 +203,9 @@ fn merge_meshes(gpu: &Gpu, scene: &Scene) -> Result<(wgpu::Buffer, wgpu::Buffer,
     // A buffer of size 0 is not allowed; a scene may be empty.
     vertices.resize(vertices.len().max(18), 0.0);
     indices.resize(indices.len().max(3), 0);
-    let buffer = |label, contents: &[u8], usage| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-    };
     Ok((
-        buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-        buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
+        gpu.buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
+        gpu.buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
         ranges,
     ))
 }

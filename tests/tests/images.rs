@@ -30,6 +30,7 @@ fn main() {
     arguments.test_threads.get_or_insert(1);
     let mut trials = vec![picture("workbench", || gallery::open("gallery:workbench").expect("a gallery scene"))];
     trials.push(trial("a normal map bends the normal as the mesh would, on both sides", &[Need::Gpu], both_sides));
+    trials.push(trial("a lost device is an error from then on", &[Need::Gpu], lost_device));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -46,6 +47,20 @@ fn both_sides() {
             // Rounding of the half floats and of the packed normals that both go through.
             assert!(a.abs_diff_eq(*b, 0.01 * b.max_element()), "{a} is not {b}, seen from the {side}");
         }
+    }
+}
+
+fn lost_device() {
+    let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
+    let scene = scenes::bent_square(false);
+    let mut renderer = Renderer::new(&gpu, &scene).unwrap_or_else(|e| panic!("{e}"));
+    let camera = scene.cameras[0].clone();
+    let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: 1 };
+    renderer.render(&view).unwrap_or_else(|e| panic!("{e}"));
+    gpu.device.destroy();
+    for _ in 0..2 {
+        let error = renderer.render(&view).expect_err("nothing is drawn without a device");
+        assert!(error.to_string().contains("the graphics device failed"), "{error}");
     }
 }
 

@@ -54,8 +54,14 @@ struct MaterialInfo {
     metallic: f32,
     roughness: f32,
     emission: [f32; 3],
+    ior: f32,
+    specular: f32,
+    specular_color: [f32; 3],
     coat: f32,
+    coat_roughness: f32,
     anisotropy: f32,
+    /// Radians from the tangent.
+    anisotropy_rotation: f32,
     /// Preset of the metal, where one is set.
     preset: Option<String>,
     alpha_mode: &'static str,
@@ -203,8 +209,13 @@ impl MaterialInfo {
             metallic: material.metallic,
             roughness: material.roughness,
             emission: material.emission.to_array(),
+            ior: material.ior,
+            specular: material.specular,
+            specular_color: material.specular_color.to_array(),
             coat: material.coat,
+            coat_roughness: material.coat_roughness,
             anisotropy: material.anisotropy,
+            anisotropy_rotation: material.anisotropy_rotation,
             preset: match &material.reflectance {
                 Reflectance::BaseColor => None,
                 Reflectance::Preset { id, .. } => Some(id.clone()),
@@ -232,8 +243,19 @@ impl MaterialInfo {
             None => format!("base color {}, metallic {}", spaced(self.base_color), self.metallic),
         }];
         parts.push(format!("roughness {}", self.roughness));
-        let numbers = [("opacity", self.opacity, 1.0), ("coat", self.coat, 0.0), ("anisotropy", self.anisotropy, 0.0)];
+        let numbers = [
+            ("opacity", self.opacity, 1.0),
+            ("ior", self.ior, 1.5),
+            ("specular", self.specular, 1.0),
+            ("coat", self.coat, 0.0),
+            ("coat roughness", self.coat_roughness, 0.0),
+            ("anisotropy", self.anisotropy, 0.0),
+            ("anisotropy rotation", self.anisotropy_rotation, 0.0),
+        ];
         parts.extend(numbers.iter().filter(|(_, v, plain)| v != plain).map(|(key, v, _)| format!("{key} {v}")));
+        if self.specular_color != [1.0; 3] {
+            parts.push(format!("specular color {}", spaced(self.specular_color)));
+        }
         if self.emission != [0.0; 3] {
             parts.push(format!("emission {}", spaced(self.emission)));
         }

@@ -164,12 +164,6 @@ fn prefilter(gpu: &Gpu, environment: &Arc<Environment>, compared_texels: u32) ->
     let maps = renderer.environment_maps();
     let texels = Texels::new(environment);
     let levels = maps.prefiltered.mip_level_count();
-    if levels < 2 {
-        return Err(Failure::usage(format!(
-            "{}: a map of {}x{} has no prefiltered level to measure; use one that is at least 32 wide",
-            environment.name, environment.width, environment.height
-        )));
-    }
     let mut rows = Vec::new();
     for level in 1..levels {
         let roughness = classical::roughness(level as f32, levels as f32);

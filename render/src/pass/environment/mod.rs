@@ -17,6 +17,8 @@ use crate::shader;
 const STORED_MAX: f32 = 60_000.0;
 /// Largest edge of a face; beyond it the cubes cost more memory than the eye gains.
 const FACE_MAX: u32 = 1024;
+/// Smallest edge of a face: below it there would be too few levels to tell one roughness from another.
+const FACE_MIN: u32 = 64;
 /// Edge of the coarsest prefiltered level: its lobe is a hemisphere wide.
 const COARSEST: u32 = 8;
 /// Edge of a face of the irradiance cube.
@@ -105,7 +107,7 @@ impl EnvironmentPass {
 
     /// Builds the cubes; the work is submitted, not awaited.
     pub fn build(&self, gpu: &Gpu, environment: &Environment) -> Result<EnvironmentMaps, RenderError> {
-        let face = (environment.width / 2).max(COARSEST).next_power_of_two().clamp(COARSEST, FACE_MAX);
+        let face = (environment.width / 2).next_power_of_two().clamp(FACE_MIN, FACE_MAX);
         let levels = face.ilog2() + 1;
         let prefiltered_levels = levels - COARSEST.ilog2();
         let largest = environment.texels.iter().map(|c| c.max_element()).fold(0.0, f32::max);
@@ -230,11 +232,7 @@ impl Steps<'_> {
             sources: lobe.sources.map_or(0, |(_, count)| count as u32),
             pad: [0; 3],
         };
-        let params = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("environment step"),
-            contents: bytemuck::bytes_of(&params),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let params = self.gpu.buffer("environment step", bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
         let level = match input {
             Input::Level(texture, level) => level_view(texture, level),
             _ => level_view(self.blank, 0),
@@ -303,11 +301,7 @@ fn source_buffer(gpu: &Gpu, sources: &[classical::Source], scale: f32) -> wgpu::
         .map(|s| SourceData { direction: s.direction, pad0: 0, power: s.power / scale, pad1: 0 })
         .collect();
     data.resize(data.len().max(1), SourceData::zeroed());
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("bright sources"),
-        contents: bytemuck::cast_slice(&data),
-        usage: wgpu::BufferUsages::STORAGE,
-    })
+    gpu.buffer("bright sources", bytemuck::cast_slice(&data), wgpu::BufferUsages::STORAGE)
 }
 
 /// The map as floats; it is dropped once the cubes are built.

@@ -5,7 +5,6 @@
 use burnish_core::scene::{Bounds, Light, LightKind};
 use glam::camera::rh::{proj::directx as proj, view};
 use glam::{Mat4, Vec3};
-use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
 use crate::layout::types::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, LightData, SHADOW_NONE, ViewData};
@@ -129,14 +128,11 @@ impl ShadowPass {
         if matrices.is_empty() {
             matrices.push(Mat4::IDENTITY);
         }
-        let buffer = |label, contents: &[u8]| {
-            let usage = wgpu::BufferUsages::STORAGE;
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
+        let storage = wgpu::BufferUsages::STORAGE;
         Shadows {
-            lights: buffer("lights", bytemuck::cast_slice(&data)),
+            lights: gpu.buffer("lights", bytemuck::cast_slice(&data), storage),
             light_count,
-            clip_from_world: buffer("shadow matrices", bytemuck::cast_slice(&matrices)),
+            clip_from_world: gpu.buffer("shadow matrices", bytemuck::cast_slice(&matrices), storage),
             maps: maps.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
@@ -155,11 +151,7 @@ impl ShadowPass {
         scene_layout: &wgpu::BindGroupLayout,
     ) {
         let view = ViewData { clip_from_world, ..bytemuck::Zeroable::zeroed() };
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("light view"),
-            contents: bytemuck::bytes_of(&view),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = gpu.buffer("light view", bytemuck::bytes_of(&view), wgpu::BufferUsages::UNIFORM);
         let group = scene.group(&gpu.device, scene_layout, &uniform);
         let target = maps.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2),

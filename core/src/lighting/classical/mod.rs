@@ -20,7 +20,7 @@ use crate::surface::ggx::reflection::{CosineWeights, sample_curve};
 use crate::surface::layered;
 
 pub use evaluate::{Lobes, Maps, OVERLAP, environment, footprint, prefilter};
-pub use sources::{SOURCES_MAX, Source, Split, split};
+pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
@@ -36,13 +36,16 @@ fn classical_source(index: u32) -> mat2x3f { return mat2x3f(vec3f(0.0, 1.0, 0.0)
 ",
 };
 
+/// Samples per pixel and frame when nothing is set.
+const SAMPLES: u32 = 16;
+
 /// Settings of this method.
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
         key: "samples",
         label: "Samples",
         unit: "per pixel and frame",
-        kind: ParamKind::Integer { min: 0, max: 1024, default: 0 },
+        kind: ParamKind::Integer { min: 0, max: 1024, default: SAMPLES as i64 },
         help: "0 looks up the prefiltered map once (split sum); more draws that many visible normals per pixel and \
                reads the map at the level of each sample's footprint.",
         affects: Affects::Frame,
@@ -88,8 +91,8 @@ impl FrameSettings {
     /// Reads settings made of [`PARAMS`]; what is not there keeps its default.
     pub fn new(settings: &Settings) -> FrameSettings {
         let samples = match settings.get("samples") {
-            Some(ParamValue::Integer(n)) => u32::try_from(n).unwrap_or(0),
-            _ => 0,
+            Some(ParamValue::Integer(n)) => u32::try_from(n).unwrap_or(SAMPLES),
+            _ => SAMPLES,
         };
         let masking = match settings.text("masking").as_deref() {
             Some("separable") => Masking::Separable,

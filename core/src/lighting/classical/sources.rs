@@ -7,8 +7,10 @@ use glam::{Vec2, Vec3};
 
 use crate::scene::Environment;
 
-/// Sources that are split off at most: each is summed for every texel of a prefiltered level, every pixel of a frame.
-pub const SOURCES_MAX: usize = 256;
+/// Sources that are split off for the prefiltered levels.
+pub const PREFILTER_SOURCES: usize = 256;
+/// Sources that are split off for shading: fewer, since each is reflected in every pixel of every frame.
+pub const SHADING_SOURCES: usize = 128;
 
 /// Light that was taken out of a block of texels, as a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,8 @@ pub struct Split {
     pub sources: Vec<Source>,
 }
 
-/// Splits off the light of the brightest blocks of `block` by `block` texels above that of the next one.
-pub fn split(environment: &Environment, block: u32) -> Split {
+/// Splits off the light of the `count` brightest blocks of `block` by `block` texels above that of the next one.
+pub fn split(environment: &Environment, block: u32, count: usize) -> Split {
     let block = block.max(1);
     let columns = environment.width.div_ceil(block);
     let blocks: Vec<Block> = (0..environment.height.div_ceil(block))
@@ -37,11 +39,8 @@ pub fn split(environment: &Environment, block: u32) -> Split {
         .map(|(x, y)| Block::new(environment, x * block, y * block, block))
         .collect();
     let mut means: Vec<f32> = blocks.iter().map(|b| b.mean).collect();
-    let cap = if means.len() > SOURCES_MAX {
-        *means.select_nth_unstable_by(SOURCES_MAX, |a, b| b.total_cmp(a)).1
-    } else {
-        f32::INFINITY
-    };
+    let cap =
+        if means.len() > count { *means.select_nth_unstable_by(count, |a, b| b.total_cmp(a)).1 } else { f32::INFINITY };
     let mut dimmed = environment.clone();
     let bright = blocks.iter().filter(|b| b.mean > cap);
     let sources = bright.filter_map(|b| b.take(&mut dimmed, 1.0 - cap / b.mean)).collect();

@@ -181,7 +181,7 @@ fn a_source_split_off_filters_like_the_map_it_came_from() {
     let mut map = Environment::new("sun", 256, 128, vec![Vec3::splat(0.25); 256 * 128]);
     let sun = 40 * 256 + 70;
     map.texels[sun] = Vec3::new(5000.0, 4000.0, 3000.0);
-    let split = split(&map, 1);
+    let split = split(&map, 1, 256);
     assert_eq!(split.sources.len(), 1);
     assert!((split.dimmed.texels[sun].x - 0.25).abs() < 1e-6);
     let texels = exact::Texels::new(&map);
@@ -204,8 +204,8 @@ fn the_two_parts_of_a_split_sum_to_the_map() {
         (0..map.height).map(|y| row(y) * map.texel_solid_angle(y) as f32).sum()
     };
     for block in [1, 3, 4] {
-        let split = split(&map, block);
-        assert!(split.sources.len() <= SOURCES_MAX);
+        let split = split(&map, block, 100);
+        assert!(split.sources.len() <= 100);
         let sum = total(&split.dimmed) + split.sources.iter().map(|s| s.power).sum::<Vec3>();
         assert!(((sum - total(&map)) / total(&map)).abs().max_element() < 1e-5, "blocks of {block}");
     }
@@ -225,7 +225,7 @@ fn both_ways_to_the_exact_reflection_agree() {
 #[test]
 fn settings_are_read_from_their_declaration() {
     let mut settings = Settings::new(PARAMS);
-    assert_eq!(FrameSettings::new(&settings).samples, 0);
+    assert_eq!(FrameSettings::new(&settings).samples, 16);
     settings.set("samples", "64").unwrap();
     settings.set("masking", "separable").unwrap();
     settings.set("multiple-scattering", "off").unwrap();

@@ -113,7 +113,7 @@ impl EnvironmentPass {
         let largest = environment.texels.iter().map(|c| c.max_element()).fold(0.0, f32::max);
         let scale = (largest / STORED_MAX).max(1.0);
         let block = classical::shading_block(environment.width);
-        let blocks = classical::split(environment, block);
+        let blocks = classical::split(environment, block, classical::SHADING_SOURCES);
         let maps = EnvironmentMaps {
             radiance: cube(gpu, "radiance", face, levels),
             dimmed: cube(gpu, "dimmed radiance", face, levels),
@@ -138,7 +138,7 @@ impl EnvironmentPass {
         steps.run(&self.copy, Input::Level(&maps.radiance, 0), (&maps.prefiltered, 0), Lobe::NONE);
         // Lobes are filtered from what is left without the brightest texels, which are added one by one. To a lobe
         // narrower than a texel none is a point; its samples are dense enough to find every texel.
-        let texels = classical::split(environment, 1);
+        let texels = classical::split(environment, 1, classical::PREFILTER_SOURCES);
         let without_texels = cube(gpu, "radiance without its brightest texels", face, levels);
         steps.fill(&without_texels, &texels.dimmed)?;
         let bright = source_buffer(gpu, &texels.sources, scale);

@@ -1,4 +1,4 @@
-//! Settings declared once: the command line, the window, documents and pages are made from the same list.
+//! Settings declared once: whoever shows, reads or checks them goes by the same list.
 
 use std::fmt;
 

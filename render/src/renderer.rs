@@ -1,6 +1,7 @@
 //! Draws views of a scene: G-buffer, lighting, blended surfaces, jittered accumulation.
 
 use burnish_core::lighting::classical;
+use burnish_core::material::Material;
 use burnish_core::math::sampling;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -156,9 +157,27 @@ impl Renderer {
         &self.maps
     }
 
-    /// Takes over the factors and reflectances of materials; textures and alpha modes stay as they were uploaded.
-    pub fn set_materials(&mut self, materials: &[burnish_core::material::Material]) {
-        self.scene.materials = materials.to_vec();
+    /// Takes over the factors and reflectances of materials, in the order of the scene's; more than it has are ignored.
+    /// Textures, alpha modes and sidedness stay as they were uploaded.
+    pub fn set_materials(&mut self, materials: &[Material]) {
+        for (old, new) in self.scene.materials.iter_mut().zip(materials) {
+            *old = Material {
+                base_color_texture: old.base_color_texture,
+                metallic_roughness_texture: old.metallic_roughness_texture,
+                normal_texture: old.normal_texture,
+                occlusion_texture: old.occlusion_texture,
+                emission_texture: old.emission_texture,
+                specular_texture: old.specular_texture,
+                specular_color_texture: old.specular_color_texture,
+                coat_texture: old.coat_texture,
+                coat_roughness_texture: old.coat_roughness_texture,
+                coat_normal_texture: old.coat_normal_texture,
+                anisotropy_texture: old.anisotropy_texture,
+                alpha_mode: old.alpha_mode,
+                double_sided: old.double_sided,
+                ..new.clone()
+            };
+        }
         self.refresh_tables();
     }
 

@@ -136,6 +136,9 @@ impl GpuScene {
             instances.push(instance_data(Mat4::IDENTITY, 0));
         }
         check_size(gpu, "instances", size_of_val(instances.as_slice()) as u64)?;
+        let materials = material_list(scene, tables);
+        check_size(gpu, "materials", size_of_val(materials.as_slice()) as u64)?;
+        check_size(gpu, "tables of metals", size_of_val(tables.floats.as_slice()) as u64)?;
         let storage = wgpu::BufferUsages::STORAGE;
         let mut cache = TextureCache::new(gpu);
         let material_groups =
@@ -144,7 +147,7 @@ impl GpuScene {
             vertices,
             indices,
             instances: gpu.buffer("instances", bytemuck::cast_slice(&instances), storage),
-            materials: gpu.buffer("materials", bytemuck::cast_slice(&material_list(scene, tables)), storage),
+            materials: gpu.buffer("materials", bytemuck::cast_slice(&materials), storage),
             material_groups,
             draws,
         })
@@ -288,11 +291,8 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
 
 /// The textures of a material in the order of the `TEXTURE_` constants, with whether they hold sRGB colours.
 fn slots(m: &Material) -> [(Option<TextureRef>, bool); TEXTURE_COUNT] {
-    let preset = matches!(m.reflectance, Reflectance::Preset { .. });
-    // A preset bypasses the base colour's texture, but a mask in its alpha still cuts.
-    let base = m.base_color_texture.filter(|_| !preset || m.alpha_mode != AlphaMode::Opaque);
     [
-        (base, true),
+        (m.base_color_texture, true),
         (m.metallic_roughness_texture, false),
         (m.normal_texture, false),
         (m.occlusion_texture, false),

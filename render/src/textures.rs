@@ -3,8 +3,10 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use burnish_core::color::rgb::{linear_from_srgb, srgb_from_linear};
 use burnish_core::material::{Filter, Sampler, Wrap};
 use burnish_core::scene::{Image, Texels};
+use glam::Vec3;
 use half::f16;
 
 use crate::device::Gpu;
@@ -20,7 +22,7 @@ impl TextureCache {
     /// Holds nothing but a white texel.
     pub fn new(gpu: &Gpu) -> TextureCache {
         let level = Level { width: 1, height: 1, texels: vec![[1.0; 4]] };
-        let white = upload(gpu, "white", &[level], Encoding::Linear8);
+        let white = upload(gpu, "white", level, Encoding::Linear8);
         TextureCache { views: HashMap::new(), samplers: HashMap::new(), white }
     }
 
@@ -39,11 +41,7 @@ impl TextureCache {
                     (Texels::Unorm8(_), false) => Encoding::Linear8,
                     (Texels::Unorm16(_), _) => Encoding::Half,
                 };
-                let allowed = gpu.device.limits().max_texture_dimension_2d;
-                let mut levels = mips(first_level(image, srgb));
-                // An image larger than the device allows starts at the first level that fits.
-                levels.retain(|level| level.width.max(level.height) <= allowed);
-                upload(gpu, &image.name, &levels, encoding)
+                upload(gpu, &image.name, first_level(image, srgb), encoding)
             })
             .clone()
     }
@@ -69,19 +67,11 @@ struct Level {
     texels: Vec<[f32; 4]>,
 }
 
-fn linear_from_srgb(x: f32) -> f32 {
-    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
-fn srgb_from_linear(x: f32) -> f32 {
-    if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
-}
-
 /// The image in linear floats, so that mips average light and not code values.
 fn first_level(image: &Image, srgb: bool) -> Level {
     let decode = |rgba: [f32; 4]| {
         let [r, g, b, a] = rgba;
-        if srgb { [linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), a] } else { rgba }
+        if srgb { linear_from_srgb(Vec3::new(r, g, b)).extend(a).to_array() } else { rgba }
     };
     let texels = match &image.texels {
         Texels::Unorm8(bytes) => {
@@ -96,27 +86,25 @@ fn first_level(image: &Image, srgb: bool) -> Level {
     Level { width: image.width, height: image.height, texels }
 }
 
-/// The chain down to one texel, each level the box average of the one before.
-fn mips(first: Level) -> Vec<Level> {
-    let mut levels = vec![first];
-    while let Some(fine) = levels.last()
-        && (fine.width > 1 || fine.height > 1)
-    {
-        let (width, height) = ((fine.width / 2).max(1), (fine.height / 2).max(1));
-        let mut texels = Vec::with_capacity((width * height) as usize);
-        for y in 0..height {
-            for x in 0..width {
-                texels.push(box_average(fine, x, y, width, height));
-            }
+impl Level {
+    /// The next level of the chain down to one texel, `None` after that.
+    fn next(&self) -> Option<Level> {
+        if self.width <= 1 && self.height <= 1 {
+            return None;
         }
-        levels.push(Level { width, height, texels });
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let texels = places.map(|(x, y)| box_average(self, x, y, width, height)).collect();
+        Some(Level { width, height, texels })
     }
-    levels
 }
 
 /// Mean of the fine texels that a coarse one covers; odd edges spread over three.
 fn box_average(fine: &Level, x: u32, y: u32, width: u32, height: u32) -> [f32; 4] {
-    let span = |i: u32, n: u32, m: u32| (i * m / n, ((i + 1) * m).div_ceil(n).min(m));
+    let span = |i: u32, n: u32, m: u32| {
+        let (i, n, m) = (u64::from(i), u64::from(n), u64::from(m));
+        ((i * m / n) as u32, ((i + 1) * m).div_ceil(n).min(m) as u32)
+    };
     let (x0, x1) = span(x, width, fine.width);
     let (y0, y1) = span(y, height, fine.height);
     let mut sum = [0.0; 4];
@@ -143,13 +131,10 @@ impl Encoding {
         let unorm = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         match self {
             Encoding::Linear8 => level.texels.iter().flat_map(|t| t.map(unorm)).collect(),
-            Encoding::Srgb8 => level
-                .texels
-                .iter()
-                .flat_map(|[r, g, b, a]| {
-                    [*r, *g, *b].map(|x| unorm(srgb_from_linear(x))).into_iter().chain([unorm(*a)])
-                })
-                .collect(),
+            Encoding::Srgb8 => {
+                let encode = |[r, g, b, a]: &[f32; 4]| srgb_from_linear(Vec3::new(*r, *g, *b)).extend(*a).to_array();
+                level.texels.iter().flat_map(|t| encode(t).map(unorm)).collect()
+            }
             Encoding::Half => {
                 let halves: Vec<f16> = level.texels.iter().flat_map(|t| t.map(f16::from_f32)).collect();
                 bytemuck::cast_slice(&halves).to_vec()
@@ -158,23 +143,32 @@ impl Encoding {
     }
 }
 
-fn upload(gpu: &Gpu, label: &str, levels: &[Level], encoding: Encoding) -> Arc<wgpu::TextureView> {
-    let (width, height) = levels.first().map_or((1, 1), |l| (l.width, l.height));
+/// Uploads the level and all below it, one in memory at a time. An image larger than the device allows starts at the
+/// first level that fits.
+fn upload(gpu: &Gpu, label: &str, mut level: Level, encoding: Encoding) -> Arc<wgpu::TextureView> {
+    let allowed = gpu.device.limits().max_texture_dimension_2d;
+    while level.width.max(level.height) > allowed
+        && let Some(next) = level.next()
+    {
+        level = next;
+    }
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: levels.len().max(1) as u32,
+        size: wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 },
+        mip_level_count: level.width.max(level.height).ilog2() + 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: encoding.format(),
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (index, level) in levels.iter().enumerate() {
-        let texel_bytes = if encoding == Encoding::Half { 8 } else { 4 };
+    let texel_bytes = if encoding == Encoding::Half { 8 } else { 4 };
+    let mut next = Some(level);
+    let mut mip_level = 0;
+    while let Some(level) = next {
         gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo { mip_level: index as u32, ..texture.as_image_copy() },
-            &encoding.bytes(level),
+            wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() },
+            &encoding.bytes(&level),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(level.width * texel_bytes),
@@ -182,6 +176,8 @@ fn upload(gpu: &Gpu, label: &str, levels: &[Level], encoding: Encoding) -> Arc<w
             },
             wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 },
         );
+        next = level.next();
+        mip_level += 1;
     }
     Arc::new(texture.create_view(&Default::default()))
 }
@@ -208,7 +204,8 @@ fn create_sampler(gpu: &Gpu, sampler: Sampler) -> wgpu::Sampler {
             Some(Filter::Linear) => wgpu::MipmapFilterMode::Linear,
             _ => wgpu::MipmapFilterMode::Nearest,
         },
-        lod_max_clamp: if sampler.mip.is_some() { 32.0 } else { 0.0 },
+        // 0.25 and not 0: at 0 the magnification filter would always be taken.
+        lod_max_clamp: if sampler.mip.is_some() { 32.0 } else { 0.25 },
         // Anisotropic filtering is allowed with linear filters only. llvmpipe 22.3 draws blocks and seams with it.
         anisotropy_clamp: if all_linear && !gpu.is_software() { 8 } else { 1 },
         ..Default::default()

@@ -60,7 +60,7 @@ struct MaterialInfo {
     coat: f32,
     coat_roughness: f32,
     anisotropy: f32,
-    /// Radians from the tangent.
+    /// Degrees counter-clockwise from the tangent.
     anisotropy_rotation: f32,
     /// Preset of the metal, where one is set.
     preset: Option<String>,
@@ -215,7 +215,7 @@ impl MaterialInfo {
             coat: material.coat,
             coat_roughness: material.coat_roughness,
             anisotropy: material.anisotropy,
-            anisotropy_rotation: material.anisotropy_rotation,
+            anisotropy_rotation: material.anisotropy_rotation.to_degrees(),
             preset: match &material.reflectance {
                 Reflectance::BaseColor => None,
                 Reflectance::Preset { id, .. } => Some(id.clone()),
@@ -250,7 +250,7 @@ impl MaterialInfo {
             ("coat", self.coat, 0.0),
             ("coat roughness", self.coat_roughness, 0.0),
             ("anisotropy", self.anisotropy, 0.0),
-            ("anisotropy rotation", self.anisotropy_rotation, 0.0),
+            ("anisotropy rotation in degrees", self.anisotropy_rotation, 0.0),
         ];
         parts.extend(numbers.iter().filter(|(_, v, plain)| v != plain).map(|(key, v, _)| format!("{key} {v}")));
         if self.specular_color != [1.0; 3] {

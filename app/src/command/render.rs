@@ -92,6 +92,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let gpu = Gpu::new().map_err(Failure::resources)?;
     let view = View { size: args.size, camera, settings, jitter_frames: args.spp_jitter };
     let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    for name in renderer.unshadowed_lights() {
+        writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
+    }
     let picture = renderer.render(&view).map_err(Failure::resources)?;
     write_picture(&picture, &args.out, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0))
         .map_err(Failure::resources)?;

@@ -135,7 +135,7 @@ pub struct Camera {
     pub projection: Projection,
 }
 
-/// The projection of a [`Camera`]. Far planes are ignored: depth is reversed and infinite.
+/// The projection of a [`Camera`]. A perspective view has no far plane: depth is reversed and infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Vertical field of view in radians; near plane in metres.

@@ -29,7 +29,7 @@ struct ViewData {
     world_from_clip: mat4x4f,
     // Homogeneous viewer: w = 1 a point, w = 0 the direction towards an orthographic viewer.
     viewer: vec4f,
-    // Rotation of the environment: cosine and sine; factor from texel to radiance; highest mip of the radiance cube.
+    // Rotation of the environment: cosine and sine; factor from texel to radiance; number of levels of the radiance cube.
     environment_cos: f32,
     environment_sin: f32,
     environment_scale: f32,

@@ -17,7 +17,7 @@ struct ClassicalLobes {
     // Levels of the radiance and of the prefiltered cube.
     radiance_levels: f32,
     prefiltered_levels: f32,
-    // Width from which a bright texel is a point to a lobe.
+    // Width from which a bright block is a point to a lobe.
     wide: f32,
 }
 

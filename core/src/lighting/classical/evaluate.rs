@@ -20,7 +20,7 @@ pub trait Maps {
     fn dimmed(&self, direction: Vec3, level: f32) -> Vec3;
     /// Bright sources; directions in world space.
     fn sources(&self) -> &[Source];
-    /// Width from which a bright texel is a point to a lobe, see [`super::wide_alpha`].
+    /// Width from which a bright block is a point to a lobe, see [`super::wide_alpha`].
     fn wide_alpha(&self) -> f32;
     /// Radiance filtered with the lobe of a level of the prefiltered cube.
     fn prefiltered(&self, direction: Vec3, level: f32) -> Vec3;

@@ -71,8 +71,8 @@ pub const PARAMS: &[ParamSpec] = &[
         label: "Fresnel form",
         unit: "",
         kind: ParamKind::Choice { options: &["spectral", "rescaled", "schlick"], default: 0 },
-        help: "Form in which metal presets are rendered.",
-        affects: Affects::Frame,
+        help: "Form in which metal presets are rendered; it is resolved into the materials before the scene is drawn.",
+        affects: Affects::Prepare,
     },
 ];
 

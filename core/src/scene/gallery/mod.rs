@@ -1,7 +1,7 @@
 //! Built-in scenes made by code: one file or folder per scene, all listed in [`list`].
 //!
 //! A scene is named on the command line as `gallery:NAME[?key=value&...]` and opened by [`open`]. The keys are
-//! declared settings, so that pages and the window show the same list. [`studio`] is the environment that lights a
+//! declared settings, so that help and messages show the same list. [`studio`] is the environment that lights a
 //! scene that brings none.
 
 pub mod shape;

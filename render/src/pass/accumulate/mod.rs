@@ -55,7 +55,7 @@ impl AccumulatePass {
             entries: &[entry(0), entry(1)],
         });
         let module = shader::ACCUMULATE.module(device);
-        let pipeline = fullscreen_pipeline(device, "accumulate", &[Some(&layout)], &module, FORMAT);
+        let pipeline = fullscreen_pipeline(device, "accumulate", &[Some(&layout)], &module, FORMAT, &[]);
         AccumulatePass { layout, pipeline }
     }
 

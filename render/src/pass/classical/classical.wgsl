@@ -22,7 +22,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let first = textureLoad(words0, pixel, 0);
     if first.x == 0u {
-        return vec4f(classical_radiance(background_direction(position.xy), 0.0), 1.0);
+        return vec4f(min(classical_radiance(background_direction(position.xy), 0.0), vec3f(frame_max)), 1.0);
     }
     let packed = Packed(
         first, textureLoad(words1, pixel, 0), textureLoad(words2, pixel, 0), textureLoad(words3, pixel, 0),

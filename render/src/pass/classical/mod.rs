@@ -66,6 +66,11 @@ pub fn light_group(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("light"), layout, entries: &entries })
 }
 
+/// The largest radiance that a target holds, for `shade.wgsl`: halves overflow at 65 520.
+pub fn frame_constants(format: wgpu::TextureFormat) -> &'static [(&'static str, f64)] {
+    if format == wgpu::TextureFormat::Rgba16Float { &[("frame_max", 65_000.0)] } else { &[] }
+}
+
 /// The pipeline and the layout of the G-buffer as textures.
 pub struct ClassicalPass {
     layout: wgpu::BindGroupLayout,
@@ -88,7 +93,8 @@ impl ClassicalPass {
             entries: &[words(0), words(1), words(2), words(3), texture_entry(4, wgpu::TextureSampleType::Depth, flat)],
         });
         let layouts = [Some(scene_layout), Some(&layout), Some(light_layout)];
-        let pipeline = fullscreen_pipeline(device, "classical", &layouts, &shader::CLASSICAL.module(device), format);
+        let module = shader::CLASSICAL.module(device);
+        let pipeline = fullscreen_pipeline(device, "classical", &layouts, &module, format, frame_constants(format));
         ClassicalPass { layout, pipeline }
     }
 

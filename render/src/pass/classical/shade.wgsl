@@ -146,6 +146,9 @@ fn lamp_at(light: LightData, position: vec3f) -> Lamp {
     return Lamp(direction, distance, light.intensity * factor);
 }
 
+// Largest radiance that a frame holds, where the device blends half floats only.
+override frame_max: f32 = 3.0e38;
+
 fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let m = materials[instances[t.id - 1u].material];
     let s = surface_of(t, m);
@@ -156,6 +159,10 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let coat_wo = classical_facing(frame_to_local(coat, to_viewer));
 
     var value = t.emission;
+    if s.coat > 0.0 {
+        // The coat lies over the emission too (KHR_materials_clearcoat, "Emission").
+        value *= coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
+    }
     for (var i = 0u; i < view.light_count; i++) {
         let lamp = lamp_at(lights[i], position);
         let wi = frame_to_local(base, lamp.direction);
@@ -172,5 +179,5 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
         view.samples, view.source_count, rotation, view.environment_mips, view.prefiltered_mips, view.wide_alpha,
     );
     value += classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, lobes);
-    return value;
+    return min(value, vec3f(frame_max));
 }

@@ -1,6 +1,6 @@
 //! Cubes of an environment: radiance with box-filtered mips, radiance prefiltered with the GGX lobe, irradiance.
 //!
-//! All three hold half floats of `radiance / scale`, so that a sun does not overflow them.
+//! They hold half floats of `radiance / scale`, so that a sun does not overflow them.
 
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
@@ -36,7 +36,7 @@ pub struct EnvironmentMaps {
     pub prefiltered: wgpu::Texture,
     /// Radiance over scale without the light of the sources.
     pub dimmed: wgpu::Texture,
-    /// `SourceData` of the brightest texels, never empty.
+    /// `SourceData` of the brightest blocks of texels, never empty.
     pub sources: wgpu::Buffer,
     /// How many of them count.
     pub source_count: u32,

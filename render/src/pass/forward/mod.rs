@@ -4,6 +4,7 @@ use glam::{Vec3, Vec4};
 
 use crate::device::Gpu;
 use crate::pass::attachment;
+use crate::pass::classical::frame_constants;
 use crate::pass::gbuffer::{VERTEX_LAYOUT, depth_state};
 use crate::scene::{Draw, GpuScene, Variant};
 use crate::shader;
@@ -44,7 +45,10 @@ impl ForwardPass {
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some("fragment"),
-                    compilation_options: Default::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: frame_constants(format),
+                        ..Default::default()
+                    },
                     targets: &[Some(target.clone())],
                 }),
                 multiview_mask: None,

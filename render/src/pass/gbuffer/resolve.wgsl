@@ -191,9 +191,9 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     // The frame of the front. Seen from behind, the bent normal turns round as a whole: a bump is a dent there.
     let side = select(-1.0, 1.0, front_facing);
     let n = safe_normalize(in.normal, vec3f(0.0, 1.0, 0.0));
-    let any = frame_new(n).t;
-    let t = safe_normalize(in.tangent.xyz - n * dot(n, in.tangent.xyz), any);
-    let b = cross(n, t) * in.tangent.w;
+    let frame = frame_with_tangent(n, in.tangent.xyz);
+    let t = frame.t;
+    let b = frame.b * in.tangent.w;
 
     var texel: Texel;
     texel.id = in.instance + 1u;
@@ -206,7 +206,7 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     let direction = s.anisotropy.xy * 2.0 - 1.0;
     let axis = vec2f(direction.x * turn.x - direction.y * turn.y, direction.x * turn.y + direction.y * turn.x);
     let along = t * axis.x + b * axis.y;
-    texel.tangent = safe_normalize(along - texel.normal * dot(texel.normal, along), frame_new(texel.normal).t);
+    texel.tangent = frame_with_tangent(texel.normal, along).t;
 
     let base = m.base_color * in.color.rgb * s.base_color.rgb;
     texel.opacity = m.opacity * in.color.a * s.base_color.a;

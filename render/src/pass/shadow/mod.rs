@@ -55,7 +55,8 @@ impl ShadowPass {
                     compilation_options: Default::default(),
                     buffers: &[Some(VERTEX_LAYOUT)],
                 },
-                primitive: variant.primitive(),
+                // What blocks light does not depend on which side is shown.
+                primitive: wgpu::PrimitiveState { cull_mode: None, ..variant.primitive() },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: DEPTH_FORMAT,
                     depth_write_enabled: Some(true),

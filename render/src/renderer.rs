@@ -161,22 +161,8 @@ impl Renderer {
     /// Textures, alpha modes and sidedness stay as they were uploaded.
     pub fn set_materials(&mut self, materials: &[Material]) {
         for (old, new) in self.scene.materials.iter_mut().zip(materials) {
-            *old = Material {
-                base_color_texture: old.base_color_texture,
-                metallic_roughness_texture: old.metallic_roughness_texture,
-                normal_texture: old.normal_texture,
-                occlusion_texture: old.occlusion_texture,
-                emission_texture: old.emission_texture,
-                specular_texture: old.specular_texture,
-                specular_color_texture: old.specular_color_texture,
-                coat_texture: old.coat_texture,
-                coat_roughness_texture: old.coat_roughness_texture,
-                coat_normal_texture: old.coat_normal_texture,
-                anisotropy_texture: old.anisotropy_texture,
-                alpha_mode: old.alpha_mode,
-                double_sided: old.double_sided,
-                ..new.clone()
-            };
+            let (alpha_mode, double_sided) = (old.alpha_mode, old.double_sided);
+            *old = Material { alpha_mode, double_sided, ..new.clone().with_textures_of(old) };
         }
         self.refresh_tables();
     }

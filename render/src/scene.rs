@@ -1,6 +1,6 @@
 //! The scene in GPU memory: vertices, instances, materials with their textures, and how they are drawn.
 
-use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRef};
+use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRef, TextureRole};
 use burnish_core::scene::Scene;
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
@@ -258,6 +258,7 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
         flags |= MATERIAL_PRESET;
     }
     let fresnel = tables.fresnel(index);
+    let textures = m.textures();
     MaterialData {
         base_color: m.base_color,
         opacity: m.opacity,
@@ -285,25 +286,17 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
         pad0: 0,
         fresnel_mean: fresnel.mean,
         pad1: 0,
-        textures: slots(m).map(|(texture, _)| texture.map_or_else(TextureSlot::absent, TextureSlot::new)),
+        textures: std::array::from_fn(|i| match textures[i] {
+            Some(texture) if !bypassed(m, TextureRole::ALL[i]) => TextureSlot::new(texture),
+            _ => TextureSlot::absent(),
+        }),
     }
 }
 
-/// The textures of a material in the order of the `TEXTURE_` constants, with whether they hold sRGB colours.
-fn slots(m: &Material) -> [(Option<TextureRef>, bool); TEXTURE_COUNT] {
-    [
-        (m.base_color_texture, true),
-        (m.metallic_roughness_texture, false),
-        (m.normal_texture, false),
-        (m.occlusion_texture, false),
-        (m.emission_texture, true),
-        (m.specular_texture, false),
-        (m.specular_color_texture, true),
-        (m.coat_texture, false),
-        (m.coat_roughness_texture, false),
-        (m.coat_normal_texture, false),
-        (m.anisotropy_texture, false),
-    ]
+/// A preset bypasses the base colour's texture, but a mask in its alpha still cuts.
+fn bypassed(m: &Material, role: TextureRole) -> bool {
+    let preset = matches!(m.reflectance, Reflectance::Preset { .. });
+    role == TextureRole::BaseColor && preset && m.alpha_mode == AlphaMode::Opaque
 }
 
 impl TextureSlot {
@@ -329,10 +322,14 @@ fn material_group(
     material: &Material,
     cache: &mut TextureCache,
 ) -> wgpu::BindGroup {
-    let bound: Vec<_> = slots(material)
+    let bound: Vec<_> = TextureRole::ALL
         .iter()
-        .map(|(texture, srgb)| match texture {
-            Some(t) => (cache.view(gpu, t.image, &scene.images[t.image], *srgb), cache.sampler(gpu, t.sampler)),
+        .zip(material.textures())
+        .map(|(role, texture)| match texture {
+            Some(t) => {
+                let view = cache.view(gpu, t.image, &scene.images[t.image], role.is_color());
+                (view, cache.sampler(gpu, t.sampler))
+            }
             None => (cache.white(), cache.sampler(gpu, Default::default())),
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRef};
+use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRole};
 use burnish_core::scene::{Camera, Light, LightKind, Projection, Scene, Texels};
 use serde::Serialize;
 
@@ -189,19 +189,6 @@ impl Info {
 
 impl MaterialInfo {
     fn of(material: &Material) -> MaterialInfo {
-        let textures: [(&'static str, &Option<TextureRef>); 11] = [
-            ("base color", &material.base_color_texture),
-            ("metallic roughness", &material.metallic_roughness_texture),
-            ("normal", &material.normal_texture),
-            ("occlusion", &material.occlusion_texture),
-            ("emission", &material.emission_texture),
-            ("specular", &material.specular_texture),
-            ("specular color", &material.specular_color_texture),
-            ("coat", &material.coat_texture),
-            ("coat roughness", &material.coat_roughness_texture),
-            ("coat normal", &material.coat_normal_texture),
-            ("anisotropy", &material.anisotropy_texture),
-        ];
         MaterialInfo {
             name: material.name.clone(),
             base_color: material.base_color.to_array(),
@@ -227,10 +214,11 @@ impl MaterialInfo {
             },
             double_sided: material.double_sided,
             unlit: material.unlit,
-            textures: textures
+            textures: TextureRole::ALL
                 .into_iter()
+                .zip(material.textures())
                 .filter_map(|(role, texture)| {
-                    texture.as_ref().map(|t| TextureInfo { role, image: t.image, uv_set: t.uv_set })
+                    texture.map(|t| TextureInfo { role: role.name(), image: t.image, uv_set: t.uv_set })
                 })
                 .collect(),
         }

@@ -1,12 +1,15 @@
 //! Materials: what a surface is made of, before textures are looked up.
 
 pub mod preset;
+mod texture;
 
 use std::sync::Arc;
 
 use glam::{Mat3, Vec3};
 
 use crate::surface::fresnel::Fresnel;
+
+pub use texture::TextureRole;
 
 /// A metallic-roughness material with coat and anisotropy; every factor multiplies its texture. Linear Rec.709.
 #[derive(Clone, Debug)]

@@ -102,21 +102,11 @@ fn check_instance(scene: &Scene, instance: &Instance, at: &mut At<'_>) {
 
 fn check_material(scene: &Scene, material: &Material, at: &mut At<'_>) {
     let m = material;
-    let textures = [
-        m.base_color_texture,
-        m.metallic_roughness_texture,
-        m.normal_texture,
-        m.occlusion_texture,
-        m.emission_texture,
-        m.specular_texture,
-        m.specular_color_texture,
-        m.coat_texture,
-        m.coat_roughness_texture,
-        m.coat_normal_texture,
-        m.anisotropy_texture,
-    ];
     let sound = |t: &TextureRef| t.image < scene.images.len() && t.uv_set < 2 && t.transform.is_finite();
-    at.unless(textures.iter().flatten().all(sound), "a texture names an image or coordinate set that does not exist");
+    at.unless(
+        m.textures().iter().flatten().all(sound),
+        "a texture names an image or coordinate set that does not exist",
+    );
     let unit = [m.opacity, m.metallic, m.roughness, m.occlusion_strength, m.specular, m.coat, m.coat_roughness];
     at.unless(unit.iter().all(|v| (0.0..=1.0).contains(v)), "a factor is outside 0 to 1");
     at.unless((0.0..=1.0).contains(&m.anisotropy), "the anisotropy is outside 0 to 1");

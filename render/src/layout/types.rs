@@ -1,5 +1,6 @@
 //! The `repr(C)` twins of `types.wgsl`, with their fields listed so that a test can compare offsets.
 
+use burnish_core::material::TextureRole;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
@@ -51,6 +52,7 @@ macro_rules! shared {
 pub const STRUCTS: &[Struct] = &[
     ViewData::LAYOUT,
     SourceData::LAYOUT,
+    EnvironmentStep::LAYOUT,
     TextureSlot::LAYOUT,
     MaterialData::LAYOUT,
     InstanceData::LAYOUT,
@@ -60,6 +62,17 @@ pub const STRUCTS: &[Struct] = &[
 /// Every shared constant with its value.
 pub const CONSTANTS: &[(&str, u32)] = &[
     ("TEXTURE_COUNT", TEXTURE_COUNT as u32),
+    ("TEXTURE_BASE_COLOR", TextureRole::BaseColor as u32),
+    ("TEXTURE_METALLIC_ROUGHNESS", TextureRole::MetallicRoughness as u32),
+    ("TEXTURE_NORMAL", TextureRole::Normal as u32),
+    ("TEXTURE_OCCLUSION", TextureRole::Occlusion as u32),
+    ("TEXTURE_EMISSION", TextureRole::Emission as u32),
+    ("TEXTURE_SPECULAR", TextureRole::Specular as u32),
+    ("TEXTURE_SPECULAR_COLOR", TextureRole::SpecularColor as u32),
+    ("TEXTURE_COAT", TextureRole::Coat as u32),
+    ("TEXTURE_COAT_ROUGHNESS", TextureRole::CoatRoughness as u32),
+    ("TEXTURE_COAT_NORMAL", TextureRole::CoatNormal as u32),
+    ("TEXTURE_ANISOTROPY", TextureRole::Anisotropy as u32),
     ("MATERIAL_PRESET", MATERIAL_PRESET),
     ("MATERIAL_UNLIT", MATERIAL_UNLIT),
     ("MATERIAL_MASK", MATERIAL_MASK),
@@ -71,7 +84,7 @@ pub const CONSTANTS: &[(&str, u32)] = &[
 ];
 
 /// Textures of a material, in the order of the `TEXTURE_` constants of `types.wgsl`.
-pub const TEXTURE_COUNT: usize = 11;
+pub const TEXTURE_COUNT: usize = TextureRole::ALL.len();
 /// The metal part follows a preset; base colour and metallic are bypassed.
 pub const MATERIAL_PRESET: u32 = 1;
 /// Shows the base colour as emission.
@@ -120,6 +133,20 @@ shared! {
         pad0: u32,
         power: Vec3,
         pad1: u32,
+    }
+}
+
+shared! {
+    /// One step of building the cubes of an environment.
+    pub struct EnvironmentStep {
+        levels: f32,
+        alpha: f32,
+        samples: u32,
+        scale: f32,
+        sources: u32,
+        pad0: u32,
+        pad1: u32,
+        pad2: u32,
     }
 }
 

@@ -58,6 +58,22 @@ struct SourceData {
     pad1: u32,
 }
 
+// One step of building the cubes of an environment.
+struct EnvironmentStep {
+    // Levels of the radiance cube.
+    levels: f32,
+    // GGX width of the level that is written.
+    alpha: f32,
+    samples: u32,
+    // Factor that brings the source into the range of half floats.
+    scale: f32,
+    // Sources to add to a filtered level.
+    sources: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
 struct TextureSlot {
     // Columns of the 2x2 part of the coordinate transform.
     matrix: vec4f,

@@ -8,6 +8,8 @@ pub mod gbuffer;
 pub mod shadow;
 
 use crate::device::Gpu;
+use crate::pass::gbuffer::VERTEX_LAYOUT;
+use crate::scene::Variant;
 
 /// Layout of what every drawing pass binds at group 0: view, instances, materials.
 pub fn scene_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
@@ -116,4 +118,58 @@ pub(crate) fn fullscreen_pipeline(
         multiview_mask: None,
         cache: None,
     })
+}
+
+/// What tells one mesh pipeline from another.
+pub(crate) struct MeshPipeline<'a> {
+    pub label: &'a str,
+    pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
+    pub module: &'a wgpu::ShaderModule,
+    pub depth: wgpu::DepthStencilState,
+    /// Targets of the fragment stage; without one only depth is written.
+    pub targets: Option<&'a [Option<wgpu::ColorTargetState>]>,
+    pub constants: &'a [(&'a str, f64)],
+    /// Back faces are drawn whatever the material says.
+    pub both_sides: bool,
+}
+
+impl MeshPipeline<'_> {
+    /// The pipelines of all variants, in the order of [`Variant::ALL`].
+    pub fn create(&self, device: &wgpu::Device) -> [wgpu::RenderPipeline; 4] {
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: self.layouts,
+            immediate_size: 0,
+        });
+        Variant::ALL.map(|variant| {
+            let mut primitive = variant.primitive();
+            if self.both_sides {
+                primitive.cull_mode = None;
+            }
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(self.label),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: self.module,
+                    entry_point: Some("vertex"),
+                    compilation_options: Default::default(),
+                    buffers: &[Some(VERTEX_LAYOUT)],
+                },
+                primitive,
+                depth_stencil: Some(self.depth.clone()),
+                multisample: Default::default(),
+                fragment: self.targets.map(|targets| wgpu::FragmentState {
+                    module: self.module,
+                    entry_point: Some("fragment"),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: self.constants,
+                        ..Default::default()
+                    },
+                    targets,
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        })
+    }
 }

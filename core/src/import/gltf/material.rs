@@ -56,19 +56,7 @@ impl Materials {
     pub fn uses(&self, index: usize) -> Uses {
         let Some(m) = self.list.get(index) else { return Uses { uv_sets: [false; 2], tangent_uv: 0 } };
         let directional = m.normal_texture.or(m.anisotropy_texture).or(m.coat_normal_texture);
-        let all = [
-            m.base_color_texture,
-            m.metallic_roughness_texture,
-            m.normal_texture,
-            m.occlusion_texture,
-            m.emission_texture,
-            m.specular_texture,
-            m.specular_color_texture,
-            m.coat_texture,
-            m.coat_roughness_texture,
-            m.coat_normal_texture,
-            m.anisotropy_texture,
-        ];
+        let all = m.textures();
         let set = |set: u8| all.iter().flatten().any(|t| t.uv_set == set);
         Uses { uv_sets: [set(0), set(1)], tangent_uv: directional.map_or(0, |t| usize::from(t.uv_set)) }
     }

@@ -8,6 +8,9 @@ use crate::pass::{buffer_entry, cleared, fullscreen_pipeline, texture_entry};
 use crate::shader;
 
 /// Layout of what `shade.wgsl` reads at group 2.
+///
+/// With the eleven textures of a material the forward pass reads 16, as many as every adapter allows: a further map must
+/// share one of these.
 pub fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let float = wgpu::TextureSampleType::Float { filterable: true };
     let cube = wgpu::TextureViewDimension::Cube;

@@ -1,21 +1,6 @@
 // Builds the cubes of an environment, one level of one cube per dispatch, a texel per invocation, a face per z.
 
-struct Params {
-    // Levels of the radiance cube.
-    levels: f32,
-    // GGX width of the level that is written.
-    alpha: f32,
-    samples: u32,
-    // Factor that brings the source into the range of half floats.
-    scale: f32,
-    // Sources to add to a filtered level.
-    sources: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
-}
-
-@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(0) var<uniform> params: EnvironmentStep;
 @group(0) @binding(1) var equirectangular: texture_2d<f32>;
 @group(0) @binding(2) var finer: texture_2d_array<f32>;
 @group(0) @binding(3) var radiance_cube: texture_cube<f32>;

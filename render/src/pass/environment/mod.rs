@@ -4,12 +4,12 @@
 
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
-use crate::layout::types::SourceData;
+use crate::layout::types::{EnvironmentStep, SourceData};
 use crate::renderer::RenderError;
 use crate::shader;
 
@@ -46,17 +46,6 @@ pub struct EnvironmentMaps {
     pub irradiance: wgpu::Texture,
     /// Factor from a texel to radiance.
     pub scale: f32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Params {
-    levels: f32,
-    alpha: f32,
-    samples: u32,
-    scale: f32,
-    sources: u32,
-    pad: [u32; 3],
 }
 
 /// Pipelines that build [`EnvironmentMaps`].
@@ -224,13 +213,15 @@ impl Steps<'_> {
 
     fn run(&self, pipeline: &wgpu::ComputePipeline, input: Input, target: (&wgpu::Texture, u32), lobe: Lobe) {
         let device = &self.gpu.device;
-        let params = Params {
+        let params = EnvironmentStep {
             levels: self.levels as f32,
             alpha: lobe.alpha,
             samples: lobe.samples,
             scale: 1.0 / self.scale,
             sources: lobe.sources.map_or(0, |(_, count)| count as u32),
-            pad: [0; 3],
+            pad0: 0,
+            pad1: 0,
+            pad2: 0,
         };
         let params = self.gpu.buffer("environment step", bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
         let level = match input {

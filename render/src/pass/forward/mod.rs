@@ -3,13 +3,13 @@
 use glam::{Vec3, Vec4};
 
 use crate::device::Gpu;
-use crate::pass::attachment;
 use crate::pass::classical::frame_constants;
-use crate::pass::gbuffer::{VERTEX_LAYOUT, depth_state};
-use crate::scene::{Draw, GpuScene, Variant};
+use crate::pass::gbuffer::depth_state;
+use crate::pass::{MeshPipeline, attachment};
+use crate::scene::{Draw, GpuScene};
 use crate::shader;
 
-/// Pipelines, one for each [`Variant`].
+/// Pipelines, one for each [`crate::scene::Variant`].
 pub struct ForwardPass {
     pipelines: [wgpu::RenderPipeline; 4],
 }
@@ -17,44 +17,21 @@ pub struct ForwardPass {
 impl ForwardPass {
     /// Compiles the pipelines for targets of `format`.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>], format: wgpu::TextureFormat) -> ForwardPass {
-        let device = &gpu.device;
-        let module = shader::FORWARD.module(device);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("forward"),
-            bind_group_layouts: layouts,
-            immediate_size: 0,
-        });
         let target = wgpu::ColorTargetState {
             format,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::COLOR,
         };
-        let pipelines = Variant::ALL.map(|variant| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("forward"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: Default::default(),
-                    buffers: &[Some(VERTEX_LAYOUT)],
-                },
-                primitive: variant.primitive(),
-                depth_stencil: Some(depth_state(false)),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fragment"),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: frame_constants(format),
-                        ..Default::default()
-                    },
-                    targets: &[Some(target.clone())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        });
+        let pipelines = MeshPipeline {
+            label: "forward",
+            layouts,
+            module: &shader::FORWARD.module(&gpu.device),
+            depth: depth_state(false),
+            targets: Some(&[Some(target)]),
+            constants: frame_constants(format),
+            both_sides: false,
+        }
+        .create(&gpu.device);
         ForwardPass { pipelines }
     }
 

@@ -3,7 +3,7 @@
 use glam::UVec2;
 
 use crate::device::Gpu;
-use crate::pass::{cleared, target};
+use crate::pass::{MeshPipeline, cleared, target};
 use crate::scene::{GpuScene, VERTEX_ATTRIBUTES, VERTEX_STRIDE, Variant};
 use crate::shader;
 
@@ -54,38 +54,17 @@ pub struct GBufferPass {
 impl GBufferPass {
     /// Compiles the pipelines.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>]) -> GBufferPass {
-        let device = &gpu.device;
-        let module = shader::GBUFFER.module(device);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("gbuffer"),
-            bind_group_layouts: layouts,
-            immediate_size: 0,
-        });
-        let pipelines = Variant::ALL.map(|variant| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("gbuffer"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: Default::default(),
-                    buffers: &[Some(VERTEX_LAYOUT)],
-                },
-                primitive: variant.primitive(),
-                depth_stencil: Some(depth_state(true)),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fragment"),
-                    compilation_options: Default::default(),
-                    targets: &[const {
-                        Some(wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL })
-                    }; 4],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        });
+        let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
+        let pipelines = MeshPipeline {
+            label: "gbuffer",
+            layouts,
+            module: &shader::GBUFFER.module(&gpu.device),
+            depth: depth_state(true),
+            targets: Some(&[Some(target.clone()), Some(target.clone()), Some(target.clone()), Some(target)]),
+            constants: &[],
+            both_sides: false,
+        }
+        .create(&gpu.device);
         GBufferPass { pipelines }
     }
 

@@ -8,7 +8,8 @@ use glam::{Mat4, Vec3};
 
 use crate::device::Gpu;
 use crate::layout::types::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, LightData, SHADOW_NONE, ViewData};
-use crate::pass::gbuffer::{DEPTH_FORMAT, VERTEX_LAYOUT};
+use crate::pass::MeshPipeline;
+use crate::pass::gbuffer::{DEPTH_FORMAT, depth_state};
 use crate::scene::{GpuScene, Variant};
 use crate::shader;
 
@@ -38,48 +39,25 @@ pub struct ShadowPass {
 impl ShadowPass {
     /// Compiles the pipelines.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>]) -> ShadowPass {
-        let device = &gpu.device;
-        let module = shader::SHADOW.module(device);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("shadow"),
-            bind_group_layouts: layouts,
-            immediate_size: 0,
-        });
-        let pipeline = |variant: Variant, masked: bool| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("shadow"),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex"),
-                    compilation_options: Default::default(),
-                    buffers: &[Some(VERTEX_LAYOUT)],
-                },
-                // What blocks light does not depend on which side is shown.
-                primitive: wgpu::PrimitiveState { cull_mode: None, ..variant.primitive() },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                    stencil: Default::default(),
+        let module = shader::SHADOW.module(&gpu.device);
+        let pipelines = |masked: bool| {
+            MeshPipeline {
+                label: "shadow",
+                layouts,
+                module: &module,
+                depth: wgpu::DepthStencilState {
                     // Depth is reversed: away from the light is down.
                     bias: wgpu::DepthBiasState { constant: 0, slope_scale: -1.5, clamp: 0.0 },
-                }),
-                multisample: Default::default(),
-                fragment: masked.then_some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fragment"),
-                    compilation_options: Default::default(),
-                    targets: &[],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+                    ..depth_state(true)
+                },
+                targets: masked.then_some(&[]),
+                constants: &[],
+                // What blocks light does not depend on which side is shown.
+                both_sides: true,
+            }
+            .create(&gpu.device)
         };
-        ShadowPass {
-            opaque: Variant::ALL.map(|variant| pipeline(variant, false)),
-            masked: Variant::ALL.map(|variant| pipeline(variant, true)),
-        }
+        ShadowPass { opaque: pipelines(false), masked: pipelines(true) }
     }
 
     /// Renders the maps of all lights.

@@ -3,8 +3,6 @@
 //! A leaf holds functions, structs and constants only: no bindings, no entry points, no textures. What it must look up
 //! it asks of a function that the joining pass defines; such functions are declared in [`Leaf::externs`].
 
-use crate::{color, lighting, math, surface};
-
 /// One WGSL source file with what it stands on.
 pub struct Leaf {
     /// Name of the file without its ending, unique among all leaves.
@@ -16,16 +14,6 @@ pub struct Leaf {
     /// WGSL definitions that stand in for the functions the pass supplies, so that the leaf validates alone.
     /// Empty when the leaf looks nothing up.
     pub externs: &'static str,
-}
-
-/// Every leaf of the project. Tests loop over this list.
-pub fn all() -> Vec<&'static Leaf> {
-    let mut leaves = Vec::new();
-    leaves.extend(math::LEAVES);
-    leaves.extend(color::LEAVES);
-    leaves.extend(surface::LEAVES);
-    leaves.extend(lighting::LEAVES);
-    leaves
 }
 
 /// Joins leaves into one source, each once, what is needed before what needs it.

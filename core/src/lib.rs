@@ -8,6 +8,7 @@ pub mod color;
 pub mod file;
 pub mod import;
 pub mod leaf;
+pub mod leaves;
 pub mod lighting;
 pub mod material;
 pub mod math;

@@ -4,6 +4,7 @@
 //! formulas live in `burnish-core` as leaves; here are the passes that join and run them.
 
 pub mod device;
+pub mod error;
 pub mod layout;
 pub mod pass;
 pub mod readback;
@@ -14,4 +15,5 @@ mod tables;
 mod textures;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};
-pub use renderer::{RenderError, Renderer, View};
+pub use error::RenderError;
+pub use renderer::{Renderer, View};

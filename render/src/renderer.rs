@@ -10,7 +10,8 @@ use burnish_core::surface::ggx::Masking;
 use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::device::{Gpu, GpuError};
+use crate::device::Gpu;
+use crate::error::RenderError;
 use crate::layout::types::ViewData;
 use crate::pass::accumulate::{AccumulatePass, Sums};
 use crate::pass::classical::{ClassicalPass, light_group, light_layout};
@@ -22,37 +23,6 @@ use crate::pass::{scene_layout, target};
 use crate::readback::read_texture;
 use crate::scene::{GpuScene, material_layout};
 use crate::tables::Tables;
-
-/// Why a picture could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RenderError {
-    /// The device failed.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// Something does not fit the device.
-    #[error("{what}: {bytes} is more than the {allowed} that this graphics adapter allows; use a smaller model or map")]
-    TooLarge {
-        /// Buffer or texture.
-        what: String,
-        /// Bytes or pixels asked for.
-        bytes: u64,
-        /// The adapter's limit.
-        allowed: u64,
-    },
-    /// A view without pixels or larger than a texture may be.
-    #[error("a picture of {width}x{height} pixels cannot be made; each side must be 1 to {allowed}")]
-    Size {
-        /// Pixels across.
-        width: u32,
-        /// Pixels down.
-        height: u32,
-        /// Largest side.
-        allowed: u32,
-    },
-    /// There is no light from infinity to show.
-    #[error("the scene has no environment; give one")]
-    NoEnvironment,
-}
 
 /// What to draw.
 #[derive(Clone, Debug)]

@@ -5,11 +5,11 @@ use burnish_core::scene::Scene;
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use crate::device::Gpu;
+use crate::error::RenderError;
 use crate::layout::types::{
     InstanceData, MATERIAL_BLEND, MATERIAL_MASK, MATERIAL_PRESET, MATERIAL_UNLIT, MaterialData, TEXTURE_COUNT,
     TextureSlot,
 };
-use crate::renderer::RenderError;
 use crate::tables::Tables;
 use crate::textures::TextureCache;
 

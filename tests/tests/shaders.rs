@@ -34,7 +34,7 @@ fn source_of(leaf: &'static Leaf) -> String {
 
 #[test]
 fn every_leaf_validates_with_the_leaves_it_declares() {
-    let leaves = leaf::all();
+    let leaves = burnish_core::leaves::all();
     assert!(!leaves.is_empty());
     for leaf in leaves {
         validated(leaf.name, &source_of(leaf));
@@ -43,7 +43,7 @@ fn every_leaf_validates_with_the_leaves_it_declares() {
 
 #[test]
 fn leaf_names_are_unique() {
-    let mut names: Vec<_> = leaf::all().iter().map(|l| l.name).collect();
+    let mut names: Vec<_> = burnish_core::leaves::all().iter().map(|l| l.name).collect();
     names.sort_unstable();
     let count = names.len();
     names.dedup();
@@ -52,7 +52,7 @@ fn leaf_names_are_unique() {
 
 #[test]
 fn leaves_have_no_bindings_and_no_entry_points() {
-    for leaf in leaf::all() {
+    for leaf in burnish_core::leaves::all() {
         let module = validated(leaf.name, &source_of(leaf));
         assert!(module.entry_points.is_empty(), "{} has an entry point", leaf.name);
         assert!(module.global_variables.is_empty(), "{} has a global variable", leaf.name);
@@ -170,7 +170,7 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
 
 #[test]
 fn every_constant_of_a_leaf_equals_its_rust_namesake() {
-    for leaf in leaf::all() {
+    for leaf in burnish_core::leaves::all() {
         let module = validated(leaf.name, &source_of(leaf));
         let of_needs: Vec<_> =
             leaf.needs.iter().flat_map(|need| constants(&validated(need.name, &source_of(need)))).collect();

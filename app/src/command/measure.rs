@@ -7,6 +7,7 @@ use std::sync::Arc;
 use burnish_core::lighting::classical::exact::Texels;
 use burnish_core::lighting::classical::{self, PARAMS};
 use burnish_core::material::Material;
+use burnish_core::math::cube;
 use burnish_core::math::sampling::Random;
 use burnish_core::param::Settings;
 use burnish_core::scene::gallery::{self, shape};
@@ -14,7 +15,7 @@ use burnish_core::scene::{Camera, Environment, Instance, Projection, Scene};
 use burnish_core::surface::ggx::Masking;
 use burnish_render::readback::read_texture;
 use burnish_render::{Gpu, Renderer, View};
-use glam::{Affine3A, DVec3, UVec2, Vec3};
+use glam::{Affine3A, DVec3, UVec2, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -175,7 +176,7 @@ fn prefilter(gpu: &Gpu, environment: &Arc<Environment>, compared_texels: u32) ->
         let pairs: Vec<_> = compared(size, compared_texels)
             .into_par_iter()
             .map(|(face, x, y)| {
-                let direction = cube_direction(face, x, y, size);
+                let direction = texel_direction(face, x, y, size);
                 let exact = texels.prefiltered(direction, roughness * roughness);
                 (half_texel(&faces[face], (y * size + x) as usize) * f64::from(maps.scale), exact)
             })
@@ -211,18 +212,9 @@ fn half_texel(bytes: &[u8], index: usize) -> DVec3 {
 }
 
 /// Direction of a texel's centre in the environment's own frame: cube maps are left-handed, z is mirrored.
-fn cube_direction(face: usize, x: u32, y: u32, size: u32) -> Vec3 {
-    let u = (x as f32 + 0.5) / size as f32 * 2.0 - 1.0;
-    let v = (y as f32 + 0.5) / size as f32 * 2.0 - 1.0;
-    let d = match face {
-        0 => Vec3::new(1.0, -v, -u),
-        1 => Vec3::new(-1.0, -v, u),
-        2 => Vec3::new(u, 1.0, v),
-        3 => Vec3::new(u, -1.0, -v),
-        4 => Vec3::new(u, -v, 1.0),
-        _ => Vec3::new(-u, -v, -1.0),
-    };
-    Vec3::new(d.x, d.y, -d.z).normalize()
+fn texel_direction(face: usize, x: u32, y: u32, size: u32) -> Vec3 {
+    let p = (Vec2::new(x as f32, y as f32) + 0.5) / size as f32 * 2.0 - 1.0;
+    cube::direction(face as u32, p) * Vec3::new(1.0, 1.0, -1.0)
 }
 
 fn classical_ball(gpu: &Gpu, environment: &Arc<Environment>, args: &Ball) -> Result<Vec<Row>, Failure> {

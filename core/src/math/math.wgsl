@@ -52,6 +52,32 @@ fn oct_decode(p: vec2f) -> vec3f {
     return normalize(vec3f(select(folded, p, z >= 0.0), z));
 }
 
+// Unit direction of a point of a face of a cube map, (-1, -1) at its top left; faces +x, -x, +y, -y, +z, -z. Cube maps are
+// left-handed: what a face shows is mirrored in z against the world.
+fn cube_direction(face: u32, p: vec2f) -> vec3f {
+    var d: vec3f;
+    switch face {
+        case 0u: { d = vec3f(1.0, -p.y, -p.x); }
+        case 1u: { d = vec3f(-1.0, -p.y, p.x); }
+        case 2u: { d = vec3f(p.x, 1.0, p.y); }
+        case 3u: { d = vec3f(p.x, -1.0, -p.y); }
+        case 4u: { d = vec3f(p.x, -p.y, 1.0); }
+        default: { d = vec3f(-p.x, -p.y, -1.0); }
+    }
+    return normalize(d);
+}
+
+// Solid angle of a small texel there over that of one in the face's middle.
+fn cube_weight(p: vec2f) -> f32 {
+    return pow(1.0 + dot(p, p), -1.5);
+}
+
+// Where an equirectangular map shows a unit direction, from the top left: -z in the middle, +y on top.
+fn cube_equirectangular(d: vec3f) -> vec2f {
+    // Two arctangents: an arccosine would lose half of the digits near the poles.
+    return vec2f(0.5 + atan2(d.x, -d.z) * (0.5 * INV_PI), atan2(length(d.xz), d.y) * INV_PI);
+}
+
 // The square [0, 1)^2 to the unit disk, keeping areas and neighbours. Shirley and Chiu 1997.
 fn sampling_disk(u: vec2f) -> vec2f {
     let p = 2.0 * u - 1.0;

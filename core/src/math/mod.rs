@@ -1,5 +1,6 @@
-//! Frames, unit vectors, point sets, quadrature, special functions and statistics.
+//! Frames, unit vectors, cube maps, point sets, quadrature, special functions and statistics.
 
+pub mod cube;
 pub mod frame;
 pub mod oct;
 pub mod quadrature;

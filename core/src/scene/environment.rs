@@ -5,6 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3};
 
 use super::Environment;
+use crate::math::cube;
 
 impl Environment {
     /// A map from its parts, unrotated, at strength 1. Rows from the top; `texels` should hold `width * height` colours,
@@ -17,7 +18,7 @@ impl Environment {
     pub fn uv_from_direction(&self, world: Vec3) -> Vec2 {
         let (sin, cos) = self.rotation.sin_cos();
         let d = Vec3::new(cos * world.x - sin * world.z, world.y, sin * world.x + cos * world.z);
-        Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
+        cube::equirectangular(d)
     }
 
     /// The world direction that is seen at a point of the map.

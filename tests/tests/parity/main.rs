@@ -52,7 +52,7 @@ fn cases() -> Vec<Case> {
 /// Needs no GPU: naga tells which functions an entry point reaches.
 fn every_function_is_compared() {
     let cases = cases();
-    for leaf in leaf::all() {
+    for leaf in burnish_core::leaves::all() {
         let mut reached = BTreeSet::new();
         for case in cases.iter().filter(|case| case.leaf.name == leaf.name) {
             let mut module = validated(case.name, &case.source());

@@ -1,7 +1,7 @@
 //! Frames, unit vectors on a square and point sets.
 
 use burnish_core::math::frame::Frame;
-use burnish_core::math::{self, oct, sampling};
+use burnish_core::math::{self, cube, oct, sampling};
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::grid::{self, v4};
@@ -22,11 +22,47 @@ pub fn cases() -> Vec<Case> {
         Case::new("math: the square to unit vectors", leaf, "y[0] = vec4f(oct_decode(x[0].xy), 0.0);", points, |x| {
             [v4(oct::decode(x[0].truncate().truncate()), 0.0)]
         }),
+        Case::new("math: faces of a cube map", leaf, CUBE, face_points, cube_map),
+        Case::new("math: equirectangular coordinates", leaf, EQUIRECTANGULAR, off_axis, equirectangular),
         Case::new("math: the square to the disk and the hemisphere", leaf, DISK, unit_points, disk),
         Case::new("math: hashes and digits are equal to the last bit", leaf, HASH, integers, hash)
             .within(Tolerance::EXACT),
         Case::new("math: point sets", leaf, POINTS, sets, point_sets),
     ]
+}
+
+const CUBE: &str = "
+    let face = u32(x[0].z);
+    y[0] = vec4f(cube_direction(face, x[0].xy), cube_weight(x[0].xy));
+";
+
+fn face_points() -> Vec<[Vec4; 1]> {
+    let steps = [-1.0, -0.999, -0.4, 0.0, 0.3, 1.0];
+    let points = steps.into_iter().flat_map(|x| steps.map(|y| Vec2::new(x, y)));
+    points.flat_map(|p| (0..6).map(move |face| [Vec4::new(p.x, p.y, face as f32, 0.0)])).collect()
+}
+
+fn cube_map(x: &[Vec4; 1]) -> [Vec4; 1] {
+    let p = x[0].truncate().truncate();
+    [v4(cube::direction(x[0].z as u32, p), cube::weight(p))]
+}
+
+/// Around as a direction: the left edge of the map is its right edge.
+const EQUIRECTANGULAR: &str = "
+    let uv = cube_equirectangular(x[0].xyz);
+    y[0] = vec4f(cos(2.0 * PI * uv.x), sin(2.0 * PI * uv.x), uv.y, 0.0);
+";
+
+/// Directions that are not at a pole, where any u is right.
+fn off_axis() -> Vec<[Vec4; 1]> {
+    let usable = |d: &Vec3| d.x.abs() + d.z.abs() > 1e-4;
+    grid::sphere().into_iter().filter(usable).map(|d| [v4(d, 0.0)]).collect()
+}
+
+fn equirectangular(x: &[Vec4; 1]) -> [Vec4; 1] {
+    let uv = cube::equirectangular(x[0].truncate());
+    let (sin, cos) = (std::f32::consts::TAU * uv.x).sin_cos();
+    [Vec4::new(cos, sin, uv.y, 0.0)]
 }
 
 const FRAME: &str = "

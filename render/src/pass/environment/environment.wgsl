@@ -18,18 +18,9 @@ fn environment_from_cube(d: vec3f) -> vec3f {
     return vec3f(d.x, d.y, -d.z);
 }
 
-// Unit direction of a point of a face, (-1, -1) at its top left.
-fn face_direction(face: u32, p: vec2f) -> vec3f {
-    var d: vec3f;
-    switch face {
-        case 0u: { d = vec3f(1.0, -p.y, -p.x); }
-        case 1u: { d = vec3f(-1.0, -p.y, p.x); }
-        case 2u: { d = vec3f(p.x, 1.0, p.y); }
-        case 3u: { d = vec3f(p.x, -1.0, -p.y); }
-        case 4u: { d = vec3f(p.x, -p.y, 1.0); }
-        default: { d = vec3f(-p.x, -p.y, -1.0); }
-    }
-    return normalize(d);
+// A point of a texel on its face; `inside` in [0, 1]^2.
+fn on_face(texel: vec2u, inside: vec2f, size: vec2u) -> vec2f {
+    return (vec2f(texel) + inside) / vec2f(size) * 2.0 - 1.0;
 }
 
 // Rounds to the nearest half float: some devices truncate on the store, which would darken every level a little more.
@@ -46,12 +37,11 @@ fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
     return textureSampleLevel(radiance_cube, cube_sampler, environment_from_cube(direction), level).rgb;
 }
 
-// Bilinear, wrapping around and stopping at the poles. Must agree with `Environment::radiance` of the CPU.
+// Bilinear, wrapping around and stopping at the poles, as `Environment::radiance` on the CPU: `burnish measure` compares
+// what comes of both.
 fn equirectangular_radiance(d: vec3f) -> vec3f {
     let size = vec2f(textureDimensions(equirectangular));
-    let u = 0.5 + atan2(d.x, -d.z) * (0.5 * INV_PI);
-    let v = acos(clamp(d.y, -1.0, 1.0)) * INV_PI;
-    let p = vec2f(u, v) * size - 0.5;
+    let p = cube_equirectangular(d) * size - 0.5;
     let low = floor(p);
     let f = p - low;
     let w = i32(size.x);
@@ -71,21 +61,15 @@ fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     // Near the poles a texel of the cube covers many columns of the map.
-    let center = face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0);
+    let center = cube_direction(id.z, on_face(id.xy, vec2f(0.5), size));
     let n = select(2u, 6u, abs(center.y) > 0.9);
     var sum = vec3f(0.0);
     for (var i = 0u; i < n * n; i++) {
         let offset = (vec2f(f32(i % n), f32(i / n)) + 0.5) / f32(n);
-        let direction = face_direction(id.z, (vec2f(id.xy) + offset) / vec2f(size) * 2.0 - 1.0);
+        let direction = cube_direction(id.z, on_face(id.xy, offset, size));
         sum += equirectangular_radiance(environment_from_cube(direction));
     }
     store(id, sum / f32(n * n) * params.scale);
-}
-
-// Solid angle of a texel up to a factor: texels of a corner are smaller than those of a face's middle.
-fn texel_weight(id: vec2u, size: vec2u) -> f32 {
-    let p = (vec2f(id) + 0.5) / vec2f(size) * 2.0 - 1.0;
-    return pow(1.0 + dot(p, p), -1.5);
 }
 
 @compute @workgroup_size(8, 8, 1)
@@ -98,7 +82,8 @@ fn downsample(@builtin(global_invocation_id) id: vec3u) {
     var weight = 0.0;
     for (var i = 0u; i < 4u; i++) {
         let at = min(2u * id.xy + vec2u(i & 1u, i >> 1u), size - 1u);
-        let w = texel_weight(at, size);
+        // Texels of a corner are smaller than those of a face's middle.
+        let w = cube_weight(on_face(at, vec2f(0.5), size));
         sum += w * textureLoad(finer, at, id.z, 0).rgb;
         weight += w;
     }
@@ -111,7 +96,7 @@ fn prefilter(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= size) {
         return;
     }
-    let direction = environment_from_cube(face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0));
+    let direction = environment_from_cube(cube_direction(id.z, on_face(id.xy, vec2f(0.5), size)));
     store(id, classical_prefilter(direction, params.alpha, params.samples, params.levels, params.sources));
 }
 
@@ -131,15 +116,16 @@ fn irradiance(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= size) {
         return;
     }
-    let normal = face_direction(id.z, (vec2f(id.xy) + 0.5) / vec2f(size) * 2.0 - 1.0);
+    let normal = cube_direction(id.z, on_face(id.xy, vec2f(0.5), size));
     let source = textureDimensions(finer);
     var sum = vec3f(0.0);
     var solid_angle = 0.0;
     for (var face = 0u; face < 6u; face++) {
         for (var y = 0u; y < source.y; y++) {
             for (var x = 0u; x < source.x; x++) {
-                let d = face_direction(face, (vec2f(vec2u(x, y)) + 0.5) / vec2f(source) * 2.0 - 1.0);
-                let w = texel_weight(vec2u(x, y), source);
+                let p = on_face(vec2u(x, y), vec2f(0.5), source);
+                let d = cube_direction(face, p);
+                let w = cube_weight(p);
                 sum += textureLoad(finer, vec2u(x, y), face, 0).rgb * (w * max(0.0, dot(d, normal)));
                 solid_angle += w;
             }

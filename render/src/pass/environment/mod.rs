@@ -9,8 +9,8 @@ use glam::Vec3;
 use wgpu::util::DeviceExt;
 
 use crate::device::Gpu;
+use crate::error::RenderError;
 use crate::layout::types::{EnvironmentStep, SourceData};
-use crate::renderer::RenderError;
 use crate::shader;
 
 /// Largest value stored in a cube.

@@ -1,0 +1,9 @@
+//! The list of all WGSL leaves. Tests loop over it, so that a newcomer cannot be forgotten.
+
+use crate::leaf::Leaf;
+use crate::{color, lighting, math, surface};
+
+/// Every leaf of the project.
+pub fn all() -> Vec<&'static Leaf> {
+    [math::LEAVES, color::LEAVES, surface::LEAVES, lighting::LEAVES].concat()
+}

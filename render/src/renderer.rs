@@ -59,8 +59,8 @@ struct Targets {
 
 /// A scene on the device, ready to be drawn.
 ///
-/// Environment cubes and shadow maps are made once. Changing a factor of a material with [`Renderer::set_materials`]
-/// costs one buffer write.
+/// Environment cubes and shadow maps are made once; [`Renderer::set_materials`] writes factors and the tables of metals
+/// only.
 pub struct Renderer {
     gpu: Gpu,
     scene: Scene,

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use burnish_core::import::{FolderResolver, ImportOptions, load_environment, load_scene, scene_from_bytes};
+use burnish_tests::{Need, data_folder, trial};
 use libtest_mimic::{Arguments, Failed, Trial};
 
 /// Radiance HDR keeps 8 bits of mantissa and readers differ in half a step of it.
@@ -20,15 +21,9 @@ const TANGENTS: &[&str] = &["gltf/FlightHelmet/FlightHelmet.gltf", "gltf/suzanne
 
 fn main() {
     let mut arguments = Arguments::from_args();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let data = root.ancestors().map(|folder| folder.join("shared/data")).find(|folder| folder.is_dir());
-    let trials = match data {
+    let trials = match data_folder() {
         Some(data) => trials(&data),
-        None => {
-            let required = std::env::var("BURNISH_REQUIRE").is_ok_and(|list| list.split(',').any(|w| w == "data"));
-            let trial = Trial::test("ignored: no trial data", || Err("BURNISH_REQUIRE asks for trial data".into()));
-            vec![trial.with_ignored_flag(!required)]
-        }
+        None => vec![trial("models and environments", &[Need::Data], || ())],
     };
     // Decoding is parallel within each trial.
     arguments.test_threads.get_or_insert(1);

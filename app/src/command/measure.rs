@@ -146,15 +146,18 @@ fn relative_error(pairs: &[(DVec3, DVec3)]) -> f64 {
     difference / total.max(1e-300)
 }
 
+/// A metal with F = 1.
+fn white(roughness: f32) -> Material {
+    Material { name: "white".into(), metallic: 1.0, roughness, base_color: Vec3::ONE, ..Material::default() }
+}
+
 /// A white ball of radius 1 at the origin, alone, with every setting that the exact integral leaves out turned off.
 fn ball(environment: &Arc<Environment>, roughness: f32) -> Scene {
-    let material =
-        Material { name: "white".into(), metallic: 1.0, roughness, base_color: Vec3::ONE, ..Material::default() };
     Scene {
         name: "ball".into(),
         meshes: vec![shape::sphere(1.0, 256)],
         instances: vec![Instance { name: "ball".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY }],
-        materials: vec![material],
+        materials: vec![white(roughness)],
         environment: Some(environment.clone()),
         ..Scene::default()
     }
@@ -227,7 +230,7 @@ fn classical_ball(gpu: &Gpu, environment: &Arc<Environment>, args: &Ball) -> Res
     let mut renderer = Renderer::new(gpu, &ball(environment, 1.0)).map_err(Failure::resources)?;
     let mut rows = Vec::new();
     for &roughness in &args.roughness {
-        renderer.set_materials(&ball(environment, roughness).materials);
+        renderer.set_materials(&[white(roughness)]);
         let alpha = roughness * roughness;
         let exact: Vec<_> = hits
             .par_iter()

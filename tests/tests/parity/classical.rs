@@ -2,10 +2,9 @@
 
 use burnish_core::lighting::classical::{self, Lobes, Maps, Source};
 use burnish_core::math::frame::Frame;
-use burnish_core::surface::ggx::Masking;
 use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::curves::{self, Curves};
+use crate::curves::Curves;
 use crate::grid::{self, v4};
 use crate::harness::Case;
 use crate::surface::{self, Variant};
@@ -140,19 +139,7 @@ const ENVIRONMENT: &str = "
 fn variants() -> Vec<Variant> {
     // Narrow, narrow one way, wide one way, wide: the last two lie above `WIDE` and reflect the sources one by one.
     let widths = [Vec2::splat(1e-3), Vec2::new(0.03, 0.5), Vec2::new(0.7, 0.1), Vec2::new(0.25, 0.4), Vec2::ONE];
-    let mut all = Vec::new();
-    for alpha in widths {
-        for metallic in [0.0, 0.5, 1.0] {
-            for coat in [0.0, 0.7] {
-                for curve in 0..curves::COUNT {
-                    let masking = Masking::ALL[all.len() / 3 % 2];
-                    let multiple_scattering = curve != 1;
-                    all.push(Variant { curve, metallic, alpha, coat, masking, multiple_scattering });
-                }
-            }
-        }
-    }
-    all
+    surface::variants(&widths)
 }
 
 /// Every surface from every side, with the split sum and with samples, open and occluded.

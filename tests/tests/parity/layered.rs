@@ -1,10 +1,8 @@
 //! The whole surface under one light.
 
-use burnish_core::surface::ggx::Masking;
 use burnish_core::surface::layered;
 use glam::{Quat, Vec2, Vec3, Vec4};
 
-use crate::curves;
 use crate::grid::{self, v4};
 use crate::harness::Case;
 use crate::surface::{self, Variant};
@@ -34,19 +32,7 @@ const RESPONSE: &str = "
 
 fn variants() -> Vec<Variant> {
     let widths = [Vec2::splat(1e-3), Vec2::new(0.3, 0.3), Vec2::new(0.05, 0.5), Vec2::ONE];
-    let mut all = Vec::new();
-    for alpha in widths {
-        for metallic in [0.0, 0.5, 1.0] {
-            for coat in [0.0, 0.7] {
-                for curve in 0..curves::COUNT {
-                    let masking = Masking::ALL[all.len() / 3 % 2];
-                    let multiple_scattering = curve != 1;
-                    all.push(Variant { curve, metallic, alpha, coat, masking, multiple_scattering });
-                }
-            }
-        }
-    }
-    all
+    surface::variants(&widths)
 }
 
 /// Every surface under a share of the pairs, each pair with a share of the surfaces.

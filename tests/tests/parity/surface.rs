@@ -4,7 +4,7 @@ use burnish_core::surface::ggx::Masking;
 use burnish_core::surface::layered::Surface;
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::curves::Curves;
+use crate::curves::{self, Curves};
 
 /// WGSL that makes a surface of [`pack`]'s vectors: `parity_surface`. Comes after the curves.
 pub const WGSL: &str = concat!(include_str!("curves.wgsl"), include_str!("surface.wgsl"));
@@ -19,6 +19,23 @@ pub struct Variant {
     pub coat: f32,
     pub masking: Masking,
     pub multiple_scattering: bool,
+}
+
+/// Every pair of widths with metal and dielectric, with and without coat, and every curve; maskings take turns.
+pub fn variants(widths: &[Vec2]) -> Vec<Variant> {
+    let mut all = Vec::new();
+    for &alpha in widths {
+        for metallic in [0.0, 0.5, 1.0] {
+            for coat in [0.0, 0.7] {
+                for curve in 0..curves::COUNT {
+                    let masking = Masking::ALL[all.len() / 3 % 2];
+                    let multiple_scattering = curve != 1;
+                    all.push(Variant { curve, metallic, alpha, coat, masking, multiple_scattering });
+                }
+            }
+        }
+    }
+    all
 }
 
 /// Colour and metallic; widths, coat and its width; the dielectric; curve, masking and multiple scattering.

@@ -20,6 +20,7 @@ use super::report::Report;
 use super::resolve::quoted;
 use super::shading::{self, Normals};
 use super::{Cause, NormalsWhenAbsent, OBJ_CREASE_ANGLE, ReadScene, Resolver};
+use crate::color::rgb::linear_from_srgb;
 use crate::scene::{Instance, Mesh, Scene};
 
 /// Reads a model; faults and notices go to the report.
@@ -143,9 +144,5 @@ fn mesh(model: &tobj::Model, use_normals: bool) -> Result<Mesh, Cause> {
 
 /// Vertex colours of OBJ are an unwritten extension; the tools that write them write display (sRGB) values.
 fn linear(srgb: Vec3) -> Vec4 {
-    let channel = |c: f32| {
-        let c = c.clamp(0.0, 1.0);
-        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-    };
-    Vec3::from(srgb.to_array().map(channel)).extend(1.0)
+    linear_from_srgb(srgb).extend(1.0)
 }

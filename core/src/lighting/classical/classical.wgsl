@@ -250,9 +250,7 @@ fn classical_facing(wo: vec3f) -> vec3f {
 
 // Albedo of light that bounced more than once between microfacets.
 fn classical_multiple_albedo(s: Surface, wo: vec3f) -> vec3f {
-    let mean = ggx_loss_mean(s.alpha, s.masking);
-    let f = s.fresnel_mean;
-    return f * f * (1.0 - mean) / (1.0 - f * mean) * ggx_loss(wo, s.alpha, s.masking);
+    return ggx_bounces(s.fresnel_mean, ggx_loss_mean(s.alpha, s.masking)) * ggx_loss(wo, s.alpha, s.masking);
 }
 
 // Share of a reflection that an ambient occlusion leaves: none is lost by a mirror, all of it by a matte surface.

@@ -195,7 +195,7 @@ fn mean_fresnel(table: &[f32], mu: f32, alpha: f32) -> Vec3 {
 }
 
 /// Filtered importance sampling of visible normals. A wide lobe's samples would meet a lamp of a few texels or miss it:
-/// there the brightest texels are left out of the map and reflected one by one.
+/// there the brightest blocks are left out of the map and reflected one by one.
 fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) -> Vec3 {
     let wide = s.alpha.min_element() >= maps.wide_alpha();
     let g1 = ggx::masking(wo, s.alpha).max(1e-12);
@@ -248,9 +248,7 @@ fn bent_normal(base: &Frame, wo_world: Vec3, alpha: Vec2) -> Vec3 {
 
 /// Albedo of light that bounced more than once between microfacets.
 fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
-    let mean = loss_mean(s.alpha, s.masking);
-    let f = s.fresnel_mean;
-    f * f * (1.0 - mean) / (Vec3::ONE - f * mean) * loss(wo, s.alpha, s.masking)
+    ggx::bounces(s.fresnel_mean, loss_mean(s.alpha, s.masking)) * loss(wo, s.alpha, s.masking)
 }
 
 /// Share of a reflection that an ambient occlusion leaves: a mirror loses little, a matte surface all of it.

@@ -154,7 +154,7 @@ static WEIGHTS: LazyLock<[Vec<CosineWeights>; 2]> = LazyLock::new(|| {
 
 /// Mean of a Fresnel curve over the light that a GGX lobe reflects, as the split sum looks it up: three grids (R, G, B)
 /// of `ALBEDO_ALPHA` rows of `ALBEDO_MU`, over the square root of the cosine and the fourth root of alpha as
-/// `ggx_albedo_schlick_ratio` lays them out. Multiplied by the albedo for F = 1 it is the directional albedo.
+/// the GGX albedo table lays out its Schlick ratio. Multiplied by the albedo for F = 1 it is the directional albedo.
 pub fn mean_fresnel_table(fresnel: &Fresnel, masking: Masking) -> Vec<f32> {
     let curve = sample_curve(|x| fresnel.eval(x));
     let one = sample_curve(|_| glam::Vec3::ONE);

@@ -25,7 +25,7 @@ const COARSEST: u32 = 8;
 const IRRADIANCE_FACE: u32 = 16;
 /// Edge of the level of radiance from which irradiance is summed.
 const IRRADIANCE_SOURCE: u32 = 32;
-/// Format of all three cubes.
+/// Format of all cubes.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// The cubes of one environment.

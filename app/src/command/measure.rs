@@ -155,8 +155,14 @@ fn white(roughness: f32) -> Material {
 fn ball(environment: &Arc<Environment>, roughness: f32) -> Scene {
     Scene {
         name: "ball".into(),
-        meshes: vec![shape::sphere(1.0, 256)],
-        instances: vec![Instance { name: "ball".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY }],
+        meshes: vec![shape::sphere(1.0, 256).into()],
+        instances: vec![Instance {
+            name: "ball".into(),
+            mesh: 0,
+            material: 0,
+            world_from_local: Affine3A::IDENTITY,
+            visible: true,
+        }],
         materials: vec![white(roughness)],
         environment: Some(environment.clone()),
         ..Scene::default()

@@ -11,7 +11,7 @@ impl Environment {
     /// A map from its parts, unrotated, at strength 1. Rows from the top; `texels` should hold `width * height` colours,
     /// what is missing is black.
     pub fn new(name: &str, width: u32, height: u32, texels: Vec<Vec3>) -> Environment {
-        Environment { name: name.into(), width, height, texels, rotation: 0.0, strength: 1.0 }
+        Environment { name: name.into(), width, height, texels: texels.into(), rotation: 0.0, strength: 1.0 }
     }
 
     /// Where a world direction is seen, in [0, 1]^2 from the top left.

@@ -20,8 +20,8 @@ pub use validate::Fault;
 pub struct Scene {
     /// Name for people, usually the file's stem.
     pub name: String,
-    /// Triangle meshes, one per primitive of the source.
-    pub meshes: Vec<Mesh>,
+    /// Triangle meshes, one per primitive of the source; shared by the copies of a scene.
+    pub meshes: Vec<Arc<Mesh>>,
     /// Placed meshes.
     pub instances: Vec<Instance>,
     /// Materials; never empty when there is an instance.
@@ -67,6 +67,8 @@ pub struct Instance {
     pub material: usize,
     /// Any invertible affine transform; a negative determinant flips the winding.
     pub world_from_local: Affine3A,
+    /// Drawn and casting shadows; a hidden one keeps its place in the list.
+    pub visible: bool,
 }
 
 /// Pixels as the file stored them, without colour conversion. Row 0 is the top.
@@ -168,8 +170,8 @@ pub struct Environment {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Linear Rec.709 radiance, row 0 at the top; finite and not negative.
-    pub texels: Vec<Vec3>,
+    /// Linear Rec.709 radiance, row 0 at the top; finite and not negative. Shared by turned and scaled copies.
+    pub texels: Arc<[Vec3]>,
     /// Radians counter-clockwise about +y.
     pub rotation: f32,
     /// Factor on the radiance.
@@ -211,7 +213,7 @@ impl Bounds {
 }
 
 impl Scene {
-    /// Box around all instances, in world space.
+    /// Box around all instances, hidden ones included, in world space.
     pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for instance in &self.instances {

@@ -159,9 +159,10 @@ mod tests {
             indices: vec![0, 1, 2],
             ..Mesh::default()
         };
-        let instance = Instance { name: "i".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY };
+        let instance =
+            Instance { name: "i".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY, visible: true };
         Scene {
-            meshes: vec![mesh],
+            meshes: vec![mesh.into()],
             instances: vec![instance],
             materials: vec![Material::default()],
             ..Scene::default()
@@ -176,10 +177,11 @@ mod tests {
     #[test]
     fn every_fault_is_listed_with_its_element() {
         let mut scene = triangle();
-        scene.meshes[0].indices[2] = 3;
-        scene.meshes[0].positions[1].x = f32::NAN;
-        scene.meshes[0].normals[0] = Vec3::ZERO;
-        scene.meshes[0].tangents.pop();
+        let mesh = std::sync::Arc::make_mut(&mut scene.meshes[0]);
+        mesh.indices[2] = 3;
+        mesh.positions[1].x = f32::NAN;
+        mesh.normals[0] = Vec3::ZERO;
+        mesh.tangents.pop();
         scene.instances[0].material = 9;
         scene.instances[0].world_from_local = Affine3A::from_scale(Vec3::ZERO);
         scene.materials[0].roughness = f32::NAN;

@@ -28,7 +28,7 @@ impl Stage {
 
     /// Adds a mesh for later placing.
     pub fn mesh(&mut self, mesh: Mesh) -> usize {
-        self.scene.meshes.push(mesh);
+        self.scene.meshes.push(mesh.into());
         self.scene.meshes.len() - 1
     }
 
@@ -50,7 +50,7 @@ impl Stage {
     /// Places a mesh.
     pub fn place(&mut self, mesh: usize, material: usize, world_from_local: Affine3A) {
         let name = format!("instance {}", self.scene.instances.len());
-        self.scene.instances.push(Instance { name, mesh, material, world_from_local });
+        self.scene.instances.push(Instance { name, mesh, material, world_from_local, visible: true });
     }
 
     /// Adds a mesh and places it.

@@ -79,7 +79,7 @@ fn finish(raw: Raw, file_name: &str, report: &mut Report) -> Environment {
         name: Path::new(file_name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default(),
         width: width as u32,
         height: height as u32,
-        texels,
+        texels: texels.into(),
         rotation: 0.0,
         strength: 1.0,
     }

@@ -40,7 +40,7 @@ fn every_orientation_of_an_hdr_comes_out_upright() {
         ("-X 2 +Y 2", [WHITE, GREEN, BLUE, RED]),
     ] {
         let (environment, _) = read(&hdr("FORMAT=32-bit_rle_rgbe", resolution, pixels));
-        assert_eq!(environment.texels, expected, "{resolution}");
+        assert_eq!(*environment.texels, expected, "{resolution}");
     }
 }
 
@@ -52,7 +52,7 @@ fn sides_that_differ_are_kept_apart_for_rows_and_columns() {
     assert!(notices.iter().any(|n| n.contains("3x2 is not 2:1")), "{notices:?}");
     let (environment, _) = read(&hdr("", "+X 2 -Y 3", pixels.as_flattened()));
     assert_eq!((environment.width, environment.height), (2, 3));
-    assert_eq!(environment.texels, [RED, WHITE, GREEN, WHITE, BLUE, WHITE]);
+    assert_eq!(*environment.texels, [RED, WHITE, GREEN, WHITE, BLUE, WHITE]);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn every_compression_of_exr_decodes() {
             let encoding = e::Encoding { compression, blocks, line_order: e::LineOrder::Increasing };
             let bytes = exr(vec![("R", half(0.5)), ("G", half(1.0)), ("B", half(2.0))], encoding);
             let (environment, _) = read(&bytes);
-            for t in &environment.texels {
+            for t in environment.texels.iter() {
                 // The lossy ones keep about two digits.
                 assert!(t.abs_diff_eq(Vec3::new(0.5, 1.0, 2.0), 0.02), "{compression:?}, tiled {tiled}: {t}");
             }

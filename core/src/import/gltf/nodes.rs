@@ -163,7 +163,7 @@ fn place(
         let triangles = scene.meshes[mesh].indices.len() / 3;
         let taken = meter.take_instance(triangles as u64);
         report.keep(at, taken)?;
-        scene.instances.push(Instance { name: name(), mesh, material, world_from_local: transform });
+        scene.instances.push(Instance { name: name(), mesh, material, world_from_local: transform, visible: true });
     }
     Some(())
 }
@@ -229,7 +229,7 @@ impl Meshes<'_> {
             if let Some(mut read) = read {
                 let name = mesh.name.as_deref().map_or_else(|| format!("mesh {index}"), str::to_string);
                 read.name = if mesh.primitives.len() > 1 { format!("{name}.{i}") } else { name };
-                scene.meshes.push(read);
+                scene.meshes.push(read.into());
                 list.push((scene.meshes.len() - 1, material));
             }
         }

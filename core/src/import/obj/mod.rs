@@ -60,8 +60,14 @@ pub(super) fn scene(
         let taken = meter.take_instance(mesh.indices.len() as u64 / 3);
         report.keep(&at, taken)?;
         let world_from_local = Affine3A::IDENTITY;
-        scene.instances.push(Instance { name: model.name, mesh: scene.meshes.len(), material, world_from_local });
-        scene.meshes.push(mesh);
+        scene.instances.push(Instance {
+            name: model.name,
+            mesh: scene.meshes.len(),
+            material,
+            world_from_local,
+            visible: true,
+        });
+        scene.meshes.push(mesh.into());
     }
     if scene.meshes.is_empty() {
         report.fault("file", Cause::Invalid("has no faces".into()));

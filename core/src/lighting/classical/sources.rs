@@ -3,6 +3,8 @@
 //! A sun fills a few texels and carries half of the light. Samples of a lobe meet it or miss it; as a list of points it
 //! is filtered exactly.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use crate::scene::Environment;
@@ -74,10 +76,13 @@ impl Block {
     fn take(&self, map: &mut Environment, share: f32) -> Option<Source> {
         let own_frame = Environment::new("", map.width, map.height, Vec::new());
         let (mut power, mut toward) = (Vec3::ZERO, Vec3::ZERO);
-        for (index, x, y) in self.texels(map) {
-            let taken = share * map.texels[index];
-            map.texels[index] -= taken;
-            let part = taken * map.texel_solid_angle(y) as f32;
+        let places: Vec<_> = self.texels(map).map(|place| (place, map.texel_solid_angle(place.2) as f32)).collect();
+        // Copies the texels if another map shares them.
+        let texels = Arc::make_mut(&mut map.texels);
+        for ((index, x, y), solid_angle) in places {
+            let taken = share * texels[index];
+            texels[index] -= taken;
+            let part = taken * solid_angle;
             power += part;
             toward += part.element_sum() * own_frame.texel_direction(x, y, Vec2::splat(0.5));
         }

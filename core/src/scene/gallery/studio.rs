@@ -97,7 +97,7 @@ pub fn studio() -> Environment {
             *texel = lamps.iter().fold(room.radiance(direction), |sum, lamp| sum + lamp.radiance(direction));
         }
     });
-    Environment { name: "studio".into(), width, height, texels, rotation: 0.0, strength: 1.0 }
+    Environment::new("studio", width, height, texels)
 }
 
 /// The unlit studio at one height: a dark backdrop, brightest just above the horizon, and a warm floor that fades out

@@ -96,6 +96,12 @@ fn add_material(scene: &mut Scene, material: Material) -> usize {
 
 /// Places a mesh.
 fn add(scene: &mut Scene, name: &str, mesh: Mesh, material: usize, world_from_local: Affine3A) {
-    scene.instances.push(Instance { name: name.into(), mesh: scene.meshes.len(), material, world_from_local });
-    scene.meshes.push(Mesh { name: name.into(), ..mesh });
+    scene.instances.push(Instance {
+        name: name.into(),
+        mesh: scene.meshes.len(),
+        material,
+        world_from_local,
+        visible: true,
+    });
+    scene.meshes.push(Mesh { name: name.into(), ..mesh }.into());
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::color::tone::ToneMap;
+use burnish_core::import::{ImportOptions, load_scene};
 use burnish_core::lighting::classical;
 use burnish_core::param::Settings;
 use burnish_core::scene::{Camera, Scene, gallery};
@@ -84,7 +85,7 @@ fn main() -> Result<(), Failure> {
 
 fn open(model: Option<&String>) -> Result<Scene, Failure> {
     let mut scene = match model {
-        Some(path) => burnish_core::import::open(Path::new(path))?.scene,
+        Some(path) => load_scene(Path::new(path), &ImportOptions::default())?.scene,
         None => gallery::open("workbench")?,
     };
     scene.environment.get_or_insert_with(|| Arc::new(gallery::studio()));

@@ -154,10 +154,7 @@ fn preference(device_type: DeviceType) -> u32 {
 }
 
 /// The best adapter that is accepted, among those that `usable` lets through (such as by a window's surface).
-pub fn choose(
-    adapters: &[wgpu::Adapter],
-    usable: impl Fn(&wgpu::Adapter) -> bool,
-) -> Result<&wgpu::Adapter, GpuError> {
+pub fn choose(adapters: &[wgpu::Adapter], usable: impl Fn(&wgpu::Adapter) -> bool) -> Result<&wgpu::Adapter, GpuError> {
     let accepted = |a: &&wgpu::Adapter| accept(a.get_info().backend, &a.limits()).is_ok() && usable(a);
     let best = adapters.iter().filter(accepted).min_by_key(|a| preference(a.get_info().device_type));
     best.ok_or_else(|| {

@@ -96,12 +96,14 @@ impl Loader {
 
 /// True when every instance is where it was: the bounds stay.
 fn same_places(a: &Scene, b: &Scene) -> bool {
-    let same_meshes = a.meshes.len() == b.meshes.len() && a.meshes.iter().zip(&b.meshes).all(|(a, b)| Arc::ptr_eq(a, b));
+    let same_meshes =
+        a.meshes.len() == b.meshes.len() && a.meshes.iter().zip(&b.meshes).all(|(a, b)| Arc::ptr_eq(a, b));
     same_meshes
         && a.instances.len() == b.instances.len()
-        && a.instances.iter().zip(&b.instances).all(|(a, b)| {
-            (a.mesh, a.world_from_local) == (b.mesh, b.world_from_local)
-        })
+        && a.instances
+            .iter()
+            .zip(&b.instances)
+            .all(|(a, b)| (a.mesh, a.world_from_local) == (b.mesh, b.world_from_local))
 }
 
 /// Prepared environments, the last used first. Turned and scaled copies of one map share its cubes.

@@ -34,7 +34,10 @@ impl Camera {
             Projection::Orthographic { ymag, near, .. } => ((ndc * ymag).extend(-near), Vec3::NEG_Z),
         };
         let world = &self.world_from_view;
-        Ray { origin: world.transform_point3(origin), direction: world.transform_vector3(direction).normalize_or_zero() }
+        Ray {
+            origin: world.transform_point3(origin),
+            direction: world.transform_vector3(direction).normalize_or_zero(),
+        }
     }
 }
 
@@ -158,7 +161,8 @@ mod tests {
     #[test]
     fn rays_go_through_the_point_of_the_picture() {
         let perspective = camera();
-        let orthographic = Camera { projection: Projection::Orthographic { ymag: 1.0, near: 0.1, far: 9.0 }, ..camera() };
+        let orthographic =
+            Camera { projection: Projection::Orthographic { ymag: 1.0, near: 0.1, far: 9.0 }, ..camera() };
         // The upper right quarter: x to the right, y up.
         let at = Vec2::new(0.75, 0.25);
         let ray = perspective.ray(at, 2.0);

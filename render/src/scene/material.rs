@@ -178,12 +178,7 @@ impl MaterialGroups {
     }
 }
 
-fn create_group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    bound: &Bound,
-    cache: &mut TextureCache,
-) -> wgpu::BindGroup {
+fn create_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, bound: &Bound, cache: &mut TextureCache) -> wgpu::BindGroup {
     let bound = bound.0.each_ref().map(|texture| match texture {
         Some((image, is_color, sampler)) => (cache.view(gpu, image, *is_color), cache.sampler(gpu, *sampler)),
         None => (cache.white(), cache.sampler(gpu, Default::default())),

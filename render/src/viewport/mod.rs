@@ -71,7 +71,9 @@ struct Canvas {
 enum Shown {
     Nothing,
     /// The last quick frame, of the quick canvas or, where it has the panel's size, of the still one.
-    Quick { full: bool },
+    Quick {
+        full: bool,
+    },
     /// The sums.
     Still,
 }
@@ -191,7 +193,9 @@ impl Viewport {
             settled,
             preparing: None,
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
-            notices: unshadowed.map(|name| format!("light `{name}` casts no shadow: the shadow maps are full")).collect(),
+            notices: unshadowed
+                .map(|name| format!("light `{name}` casts no shadow: the shadow maps are full"))
+                .collect(),
         }
     }
 
@@ -264,9 +268,7 @@ impl Viewport {
         let Some(canvas) = self.canvas() else { return };
         let mut encoder = passes.gpu.device.create_command_encoder(&Default::default());
         let (sum, frames) = match (self.shown, &self.full) {
-            (Shown::Still, Some((_, still))) => {
-                (&still.sums.texture().create_view(&Default::default()), still.frames)
-            }
+            (Shown::Still, Some((_, still))) => (&still.sums.texture().create_view(&Default::default()), still.frames),
             _ => (&canvas.targets.frame, 1),
         };
         passes.display.encode(&passes.gpu, &mut encoder, (sum, frames), &canvas.output, display);

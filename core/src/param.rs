@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde_json::Value;
+
 /// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamSpec {
@@ -47,6 +49,18 @@ pub enum ParamKind {
         /// Index of the word when not set.
         default: usize,
     },
+    /// On or off.
+    Toggle {
+        /// Value when not set.
+        default: bool,
+    },
+    /// A linear Rec.709 colour, each channel in `0..=max`.
+    Color {
+        /// Greatest value of a channel.
+        max: f64,
+        /// Value when not set.
+        default: [f64; 3],
+    },
 }
 
 /// What must be done anew when a setting changes.
@@ -67,6 +81,10 @@ pub enum ParamValue {
     Number(f64),
     /// For [`ParamKind::Choice`]: index of the word.
     Choice(usize),
+    /// For [`ParamKind::Toggle`].
+    Toggle(bool),
+    /// For [`ParamKind::Color`].
+    Color([f64; 3]),
 }
 
 /// Why a value was refused. Its text names the setting and what it takes.
@@ -98,6 +116,8 @@ impl fmt::Display for ParamKind {
             ParamKind::Integer { min, max, .. } => write!(f, "a whole number from {min} to {max}"),
             ParamKind::Number { min, max, .. } => write!(f, "a number from {min} to {max}"),
             ParamKind::Choice { options, .. } => write!(f, "one of {}", options.join(", ")),
+            ParamKind::Toggle { .. } => write!(f, "on or off"),
+            ParamKind::Color { max, .. } => write!(f, "three numbers from 0 to {max}, with commas between"),
         }
     }
 }
@@ -109,22 +129,78 @@ impl ParamSpec {
             ParamKind::Integer { default, .. } => ParamValue::Integer(default),
             ParamKind::Number { default, .. } => ParamValue::Number(default),
             ParamKind::Choice { default, .. } => ParamValue::Choice(default),
+            ParamKind::Toggle { default } => ParamValue::Toggle(default),
+            ParamKind::Color { default, .. } => ParamValue::Color(default),
         }
+    }
+
+    /// True for a value of the right kind and in range.
+    pub fn accepts(&self, value: ParamValue) -> bool {
+        match (self.kind, value) {
+            (ParamKind::Integer { min, max, .. }, ParamValue::Integer(v)) => (min..=max).contains(&v),
+            (ParamKind::Number { min, max, .. }, ParamValue::Number(v)) => (min..=max).contains(&v),
+            (ParamKind::Choice { options, .. }, ParamValue::Choice(index)) => index < options.len(),
+            (ParamKind::Toggle { .. }, ParamValue::Toggle(_)) => true,
+            (ParamKind::Color { max, .. }, ParamValue::Color(c)) => c.iter().all(|v| (0.0..=max).contains(v)),
+            _ => false,
+        }
+    }
+
+    /// A value as files hold it: a number, a word, true or false, or three numbers.
+    pub fn json(&self, value: ParamValue) -> Value {
+        match (self.kind, value) {
+            (ParamKind::Choice { options, .. }, ParamValue::Choice(index)) => {
+                options.get(index).map_or(Value::Null, |word| (*word).into())
+            }
+            (_, ParamValue::Integer(v)) => v.into(),
+            (_, ParamValue::Number(v)) => v.into(),
+            (_, ParamValue::Choice(index)) => index.into(),
+            (_, ParamValue::Toggle(on)) => on.into(),
+            (_, ParamValue::Color(c)) => c.to_vec().into(),
+        }
+    }
+
+    /// Reads what [`ParamSpec::json`] wrote, refusing what is out of range.
+    pub fn from_json(&self, json: &Value) -> Result<ParamValue, ParamError> {
+        let value = match (self.kind, json) {
+            (ParamKind::Integer { .. }, Value::Number(n)) => n.as_i64().map(ParamValue::Integer),
+            (ParamKind::Number { .. }, Value::Number(n)) => n.as_f64().map(ParamValue::Number),
+            (ParamKind::Choice { options, .. }, Value::String(word)) => {
+                options.iter().position(|o| o == word).map(ParamValue::Choice)
+            }
+            (ParamKind::Toggle { .. }, Value::Bool(on)) => Some(ParamValue::Toggle(*on)),
+            (ParamKind::Color { .. }, Value::Array(parts)) => {
+                let numbers: Option<Vec<f64>> = parts.iter().map(Value::as_f64).collect();
+                numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(ParamValue::Color)
+            }
+            _ => None,
+        };
+        let accepted = value.filter(|value| self.accepts(*value));
+        accepted.ok_or_else(|| self.refusal(&json.to_string()))
+    }
+
+    fn refusal(&self, text: &str) -> ParamError {
+        ParamError::Value { key: self.key, text: text.into(), takes: self.kind.to_string() }
     }
 
     /// Reads a value from text, refusing what is out of range.
     pub fn parse(&self, text: &str) -> Result<ParamValue, ParamError> {
         let text = text.trim();
         let value = match self.kind {
-            ParamKind::Integer { min, max, .. } => {
-                text.parse().ok().filter(|v| (min..=max).contains(v)).map(ParamValue::Integer)
-            }
-            ParamKind::Number { min, max, .. } => {
-                text.parse().ok().filter(|v| (min..=max).contains(v)).map(ParamValue::Number)
-            }
+            ParamKind::Integer { .. } => text.parse().ok().map(ParamValue::Integer),
+            ParamKind::Number { .. } => text.parse().ok().map(ParamValue::Number),
             ParamKind::Choice { options, .. } => options.iter().position(|o| *o == text).map(ParamValue::Choice),
+            ParamKind::Toggle { .. } => match text {
+                "on" | "true" => Some(ParamValue::Toggle(true)),
+                "off" | "false" => Some(ParamValue::Toggle(false)),
+                _ => None,
+            },
+            ParamKind::Color { .. } => {
+                let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+                numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(ParamValue::Color)
+            }
         };
-        value.ok_or_else(|| ParamError::Value { key: self.key, text: text.into(), takes: self.kind.to_string() })
+        value.filter(|value| self.accepts(*value)).ok_or_else(|| self.refusal(text))
     }
 }
 
@@ -151,10 +227,8 @@ impl Settings {
 
     /// Sets one from text such as a command line's `--set key=value`.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        let spec = find(self.specs, key)?;
-        let index = self.specs.iter().position(|s| s.key == spec.key).unwrap_or(0);
-        self.values[index] = spec.parse(text)?;
-        Ok(())
+        let value = find(self.specs, key)?.parse(text)?;
+        self.set_value(key, value)
     }
 
     /// The settings with their values, in the order of declaration.
@@ -175,7 +249,22 @@ impl Settings {
             (_, ParamValue::Integer(v)) => v.to_string(),
             (_, ParamValue::Number(v)) => v.to_string(),
             (_, ParamValue::Choice(index)) => index.to_string(),
+            (_, ParamValue::Toggle(on)) => if on { "on" } else { "off" }.into(),
+            (_, ParamValue::Color([r, g, b])) => format!("{r},{g},{b}"),
         })
+    }
+
+    /// Sets one to a value; one of the wrong kind or out of range is refused.
+    pub fn set_value(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        let spec = find(self.specs, key)?;
+        if !spec.accepts(value) {
+            return Err(spec.refusal(&spec.json(value).to_string()));
+        }
+        let place = self.specs.iter().position(|s| s.key == spec.key);
+        if let Some(slot) = place.and_then(|place| self.values.get_mut(place)) {
+            *slot = value;
+        }
+        Ok(())
     }
 }
 
@@ -198,5 +287,30 @@ mod tests {
         assert_eq!(spec.parse("64"), Ok(ParamValue::Integer(64)));
         assert!(spec.parse("2000").unwrap_err().to_string().contains("0 to 1024"));
         assert!(find(SPECS, "sample").unwrap_err().to_string().contains("samples"));
+    }
+
+    #[test]
+    fn values_of_every_kind_go_through_json_and_text_unchanged() {
+        let kinds = [
+            (ParamKind::Integer { min: -3, max: 3, default: 0 }, ParamValue::Integer(-2), "-2"),
+            (ParamKind::Number { min: 0.0, max: 1.0, default: 0.0 }, ParamValue::Number(0.1), "0.1"),
+            (ParamKind::Choice { options: &["a", "b"], default: 0 }, ParamValue::Choice(1), "b"),
+            (ParamKind::Toggle { default: false }, ParamValue::Toggle(true), "on"),
+            (ParamKind::Color { max: 1.0, default: [0.0; 3] }, ParamValue::Color([0.1, 0.2, 1.0]), "0.1,0.2,1"),
+        ];
+        for (kind, value, text) in kinds {
+            let spec = ParamSpec { kind, ..SPECS[0] };
+            assert_eq!(spec.from_json(&spec.json(value)), Ok(value));
+            assert_eq!(spec.parse(text), Ok(value));
+            assert!(spec.from_json(&Value::Null).is_err() && spec.parse("").is_err());
+        }
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_refused_from_json_too() {
+        let spec = ParamSpec { kind: ParamKind::Color { max: 1.0, default: [0.0; 3] }, ..SPECS[0] };
+        assert!(spec.from_json(&serde_json::json!([0.0, 2.0, 0.0])).is_err());
+        assert!(spec.from_json(&serde_json::json!([0.0, 1.0])).is_err());
+        assert!(!spec.accepts(ParamValue::Color([f64::NAN, 0.0, 0.0])));
     }
 }

@@ -1,5 +1,6 @@
 //! Materials: what a surface is made of, before textures are looked up.
 
+pub mod params;
 pub mod preset;
 mod texture;
 

@@ -5,6 +5,7 @@
 //! together.
 
 pub mod color;
+pub mod document;
 pub mod file;
 pub mod import;
 pub mod leaf;

@@ -2,6 +2,9 @@
 //!
 //! They hold half floats of `radiance / scale`, so that a sun does not overflow them.
 
+mod coarse;
+mod refine;
+
 use burnish_core::lighting::classical;
 use burnish_core::scene::Environment;
 use bytemuck::Zeroable;
@@ -12,6 +15,9 @@ use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::layout::types::{EnvironmentStep, SourceData};
 use crate::shader;
+
+pub use coarse::downsampled;
+pub use refine::{Progress, Refinement};
 
 /// Largest value stored in a cube.
 const STORED_MAX: f32 = 60_000.0;
@@ -92,6 +98,11 @@ impl EnvironmentPass {
             sampler: cube_sampler(device),
             layout,
         }
+    }
+
+    /// Small cubes of the map: a first picture of the right brightness, until a [`Refinement`] is through.
+    pub fn coarse(&self, gpu: &Gpu, environment: &Environment) -> Result<EnvironmentMaps, RenderError> {
+        self.build(gpu, &downsampled(environment))
     }
 
     /// Builds the cubes; the work is submitted, not awaited.

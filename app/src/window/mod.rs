@@ -7,16 +7,22 @@
 mod commands;
 mod edits;
 mod files;
+mod layout;
+mod palette;
 mod panel;
 mod preferences;
 mod request;
 mod session;
+mod shortcuts;
 mod stage;
+mod theme;
+mod toasts;
 mod workbench;
 
 use eframe::egui;
 
 pub use commands::{Command, Entry, Menu, TABLE};
+pub use panel::Pane;
 pub use preferences::Preferences;
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};

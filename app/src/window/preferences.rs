@@ -21,6 +21,9 @@ pub struct Preferences {
     pub ui_scale: f32,
     /// Mouse buttons of the viewport.
     pub navigation: Navigation,
+    /// Where the panels are; as at first when absent or unreadable.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layout: Option<serde_json::Value>,
 }
 
 /// Which mouse buttons turn, shift and zoom. None needs Alt alone: window managers take it.
@@ -44,6 +47,7 @@ impl Default for Preferences {
             dark: None,
             ui_scale: 1.0,
             navigation: Navigation::default(),
+            layout: None,
         }
     }
 }

@@ -12,6 +12,7 @@ mod preferences;
 mod request;
 mod session;
 mod stage;
+mod widget;
 mod workbench;
 
 use eframe::egui;

@@ -112,6 +112,7 @@ impl Viewport {
 
     /// A viewport with passes that are compiled already.
     pub fn with_passes(passes: &Arc<Passes>) -> Viewport {
+        passes.warm_up();
         Viewport {
             loader: Loader::new(passes),
             resident: None,

@@ -35,9 +35,9 @@ impl Pace {
         if self.software { scaled(window, SCALES[self.scale]) } else { window }
     }
 
-    /// Samples of a lobe while something moves.
+    /// Samples of a lobe while something moves: a software rasteriser looks each up once, which costs a tenth.
     pub fn moving_samples(&self, samples: u32) -> u32 {
-        if self.software { samples.min(MOVING_SAMPLES) } else { samples }
+        if self.software { 0 } else { samples }
     }
 
     /// Learns from a moving frame: milliseconds of its surfaces and of the rest.
@@ -81,9 +81,6 @@ impl Pace {
         learn(&mut self.still_pixel, ms / pixels(UVec2::new(size.x, rows)));
     }
 }
-
-/// Samples of a lobe that a software rasteriser can afford while something moves.
-const MOVING_SAMPLES: u32 = 4;
 
 fn scaled(window: UVec2, scale: f32) -> UVec2 {
     (window.as_vec2() * scale).round().as_uvec2().max(UVec2::ONE)

@@ -7,6 +7,7 @@ mod command;
 mod failure;
 mod source;
 mod value;
+pub mod window;
 
 use std::ffi::OsString;
 use std::io::Write;

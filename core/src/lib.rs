@@ -8,6 +8,7 @@ pub mod color;
 pub mod document;
 pub mod file;
 pub mod import;
+pub mod job;
 pub mod leaf;
 pub mod leaves;
 pub mod lighting;

@@ -302,6 +302,7 @@ fn pick_and_radiance() {
 fn hidden() {
     let mut bench = Bench::new();
     let mut scene = scenes::bent_square(false);
+    environment(&mut scene).strength = 1e-3;
     // A lamp behind the viewer, and a ball between it and the square, beside what the camera sees in the middle.
     let up = Vec3::new(0.0, 0.9, 0.8);
     scene.meshes.push(Arc::new(shape::sphere(0.25, 24)));

@@ -21,6 +21,8 @@ pub struct Options {
     pub scene: Option<String>,
     /// HDRI instead of the scene's.
     pub environment: Option<PathBuf>,
+    /// Take up the newest recovery file at once.
+    pub recover: bool,
     /// Folder for preferences, recovery files, presets and thumbnails instead of the user's.
     pub data_folder: Option<PathBuf>,
 }

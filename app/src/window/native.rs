@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process;
 use std::sync::{Arc, OnceLock};
 
-use burnish_render::device::{ACCEPTED, DRIVER_REMEDY, choose, device_descriptor};
 use burnish_render::Gpu;
+use burnish_render::device::{ACCEPTED, DRIVER_REMEDY, choose, device_descriptor};
 use eframe::egui;
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuError, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu;

@@ -7,10 +7,11 @@ mod readout;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::Assigned;
+use burnish_core::material::preset::{self, Preset};
 use burnish_core::scene::Picked;
 use burnish_render::Frame;
 use eframe::egui::emath::GuiRounding;
-use eframe::egui::{self, Align2, Color32, Rect, Response, Sense, WidgetInfo, WidgetType, pos2};
+use eframe::egui::{self, Align2, Color32, Rect, Response, Role, Sense, WidgetInfo, pos2};
 use glam::UVec2;
 
 use super::{Context, DraggedPreset};
@@ -66,7 +67,7 @@ impl ViewportPanel {
         let rect = ui.available_rect_before_wrap().round_to_pixels(scale);
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let text = summary_text(context.session);
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, &text));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &text));
         let size = (rect.size() * scale).round();
         if size.x < 1.0 || size.y < 1.0 {
             return;
@@ -164,7 +165,7 @@ impl ViewportPanel {
             context.requests.push(Request::Notice("There is no object there: drop the preset on one.".into()));
             return;
         };
-        let Some(metal) = context.session.preset(&dropped.0) else {
+        let Some(metal) = preset(context.session, &dropped.0).cloned() else {
             context.requests.push(Request::Error(format!("There is no preset `{}` any more.", dropped.0)));
             return;
         };
@@ -222,6 +223,12 @@ impl ViewportPanel {
             self.told.clone_from(&shown.message);
         }
     }
+}
+
+/// A metal that comes with the program or with the document.
+fn preset<'a>(session: &'a Session, id: &str) -> Option<&'a Preset> {
+    let own = session.document().presets.iter().map(|metal| metal.as_ref());
+    own.chain(preset::library()).find(|metal| metal.id == id)
 }
 
 /// What the picture is of, for those who do not see it.

@@ -24,6 +24,10 @@ pub struct Preferences {
     /// Where the panels are; as at first when absent or unreadable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layout: Option<serde_json::Value>,
+    /// Factor on how far a drag or a turn of the wheel goes, 0.1 to 10.
+    pub navigation_speed: f32,
+    /// Zooms the other way.
+    pub invert_zoom: bool,
 }
 
 /// Which mouse buttons turn, shift and zoom. None needs Alt alone: window managers take it.
@@ -48,6 +52,8 @@ impl Default for Preferences {
             ui_scale: 1.0,
             navigation: Navigation::default(),
             layout: None,
+            navigation_speed: 1.0,
+            invert_zoom: false,
         }
     }
 }

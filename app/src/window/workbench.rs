@@ -24,6 +24,8 @@ pub struct Options {
     pub scene: Option<String>,
     /// HDRI instead of the scene's.
     pub environment: Option<PathBuf>,
+    /// Take up the newest recovery file at once.
+    pub recover: bool,
     /// Folder for preferences, recovery files, presets and thumbnails instead of the user's.
     pub data_folder: Option<PathBuf>,
 }
@@ -101,6 +103,16 @@ impl Workbench {
     /// Messages that are shown.
     pub fn messages(&self) -> impl Iterator<Item = &str> {
         self.toasts.texts()
+    }
+
+    /// The source of the picture.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// The source of the picture, for trials of its faults.
+    pub fn stage_mut(&mut self) -> &mut Stage {
+        &mut self.stage
     }
 
     /// Draws everything and then does what was asked for.

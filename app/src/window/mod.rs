@@ -13,6 +13,7 @@ mod preferences;
 mod request;
 mod session;
 mod stage;
+mod widget;
 mod workbench;
 
 pub use commands::{Command, Entry, Menu, TABLE};

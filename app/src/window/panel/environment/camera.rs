@@ -71,10 +71,12 @@ const INVERT_ZOOM: ParamSpec = ParamSpec {
 const PRESETS: [(Navigation, &str); 3] =
     [(Navigation::Burnish, "Burnish"), (Navigation::Blender, "Blender"), (Navigation::Maya, "Maya")];
 
+type SetCamera = fn(&mut CameraEntry, ParamValue);
+
 /// The camera of the view.
 pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
     let camera = session.document().view.camera.clone();
-    let rows: [(&ParamSpec, ParamValue, fn(&mut CameraEntry, ParamValue)); 3] = [
+    let rows: [(&ParamSpec, ParamValue, SetCamera); 3] = [
         (&FOCAL_LENGTH, ParamValue::Number(camera.focal_length_mm()), |c, v| c.set_focal_length_mm(number(v))),
         (&FIELD_OF_VIEW, ParamValue::Number(camera.yfov_deg), |c, v| c.yfov_deg = number(v)),
         (&ORTHOGRAPHIC, ParamValue::Toggle(camera.orthographic), |c, v| c.orthographic = v == ParamValue::Toggle(true)),

@@ -87,7 +87,8 @@ impl LightSection {
     fn path_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         ui.horizontal(|ui| {
             let width = (ui.available_width() - 50.0).max(40.0);
-            let field = egui::TextEdit::singleline(&mut self.path).hint_text("path of an .hdr or .exr").desired_width(width);
+            let field =
+                egui::TextEdit::singleline(&mut self.path).hint_text("path of an .hdr or .exr").desired_width(width);
             let field = ui.add(field).on_hover_text("Path of an HDRI; Enter loads it.");
             name_input(&field, "HDRI path", &self.path);
             let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -74,9 +74,7 @@ impl SavedSection {
                 }
             })
             .response
-            .widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Change camera {name}"))
-            });
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Change camera {name}")));
         });
     }
 

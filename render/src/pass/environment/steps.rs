@@ -464,7 +464,11 @@ fn source_buffer(gpu: &Gpu, sources: &[Source], scale: f32) -> wgpu::Buffer {
         .map(|s| SourceData { direction: s.direction, pad0: 0, power: s.power / scale, pad1: 0 })
         .collect();
     data.resize(data.len().max(1), SourceData::zeroed());
-    gpu.buffer("bright sources", bytemuck::cast_slice(&data), wgpu::BufferUsages::STORAGE)
+    gpu.buffer(
+        "bright sources",
+        bytemuck::cast_slice(&data),
+        wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+    )
 }
 
 /// Room for the map as floats, in layers of rows: a layer is written at once, a large texture would first be cleared.

@@ -7,21 +7,24 @@ mod command;
 mod failure;
 mod source;
 mod value;
+pub mod window;
 
 use std::ffi::OsString;
 use std::io::Write;
 
-use clap::{CommandFactory, Parser};
+use clap::Parser;
 
 use command::Command;
 use failure::{Exit, Failure};
 
-/// A workbench for the look of metals.
+/// A workbench for the look of metals. Without a command it opens the window.
 #[derive(Parser)]
-#[command(name = "burnish", version, after_help = EXIT_CODES)]
+#[command(name = "burnish", version, after_help = EXIT_CODES, args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    #[command(flatten)]
+    open: command::open::Args,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 ok, 1 difference, 2 usage, 3 bad input, 4 resources";
@@ -60,9 +63,6 @@ fn parse_and_run(
     };
     match cli.command {
         Some(command) => command.run(out, err),
-        None => {
-            write!(out, "{}", Cli::command().render_help())?;
-            Ok(Exit::Ok)
-        }
+        None => command::open::run(cli.open),
     }
 }

@@ -42,7 +42,8 @@ impl SceneArg {
     }
 }
 
-fn gallery_name(scene: &OsStr) -> Option<&str> {
+/// The part after `gallery:`.
+pub fn gallery_name(scene: &OsStr) -> Option<&str> {
     scene.to_str()?.strip_prefix("gallery:")
 }
 

@@ -5,8 +5,10 @@
 //! together.
 
 pub mod color;
+pub mod document;
 pub mod file;
 pub mod import;
+pub mod job;
 pub mod leaf;
 pub mod leaves;
 pub mod lighting;

@@ -90,10 +90,13 @@ fn optional_features() -> Features {
     Features::FLOAT32_FILTERABLE | Features::FLOAT32_BLENDABLE | Features::TIMESTAMP_QUERY
 }
 
-/// OpenGL is left out: its cube faces cannot be rendered to reliably, and lights and environments are cubes.
+/// Backends that Burnish runs on. OpenGL is left out: its cube faces cannot be rendered to reliably, and lights and
+/// environments are cubes.
+pub const ACCEPTED: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
+
 fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
+    descriptor.backends = ACCEPTED;
     wgpu::Instance::new(descriptor)
 }
 
@@ -111,7 +114,7 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
         backend: format!("{:?}", info.backend),
         device_type: format!("{:?}", info.device_type),
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_string(),
-        accepted: accept(&limits),
+        accepted: accept(info.backend, &limits),
         limits: vec![
             ("largest 2D texture", limits.max_texture_dimension_2d.to_string()),
             ("storage binding, bytes", limits.max_storage_buffer_binding_size.to_string()),
@@ -122,8 +125,11 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
     }
 }
 
-/// The rule by which an adapter is taken or refused.
-fn accept(limits: &wgpu::Limits) -> Result<(), String> {
+/// The rule by which an adapter is taken or refused, the reason in words.
+pub fn accept(backend: wgpu::Backend, limits: &wgpu::Limits) -> Result<(), String> {
+    if !ACCEPTED.contains(backend.into()) {
+        return Err(format!("its backend {backend:?} is not one of Vulkan, Metal and DX12"));
+    }
     let needed = required_limits();
     let mut lacks = Vec::new();
     needed.check_limits_with_fail_fn(limits, false, |name, wanted, allowed| {
@@ -147,6 +153,34 @@ fn preference(device_type: DeviceType) -> u32 {
     }
 }
 
+/// The best adapter that is accepted, among those that `usable` lets through (such as by a window's surface).
+pub fn choose(adapters: &[wgpu::Adapter], usable: impl Fn(&wgpu::Adapter) -> bool) -> Result<&wgpu::Adapter, GpuError> {
+    let accepted = |a: &&wgpu::Adapter| accept(a.get_info().backend, &a.limits()).is_ok() && usable(a);
+    let best = adapters.iter().filter(accepted).min_by_key(|a| preference(a.get_info().device_type));
+    best.ok_or_else(|| {
+        let found: Vec<_> = adapters.iter().map(report).map(|r| refusal(&r)).collect();
+        let found = if found.is_empty() { "none found".to_string() } else { found.join("; ") };
+        GpuError::NoAdapter { found }
+    })
+}
+
+/// What a device must be opened with: buffers and textures as large as the adapter allows, everything else as every
+/// adapter allows.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let allowed = adapter.limits();
+    wgpu::DeviceDescriptor {
+        label: Some("burnish"),
+        required_features: optional_features() & adapter.features(),
+        required_limits: wgpu::Limits {
+            max_texture_dimension_2d: allowed.max_texture_dimension_2d,
+            max_buffer_size: allowed.max_buffer_size,
+            max_storage_buffer_binding_size: allowed.max_storage_buffer_binding_size,
+            ..required_limits()
+        },
+        ..Default::default()
+    }
+}
+
 impl Gpu {
     /// Opens the best adapter that is accepted.
     pub fn new() -> Result<Gpu, GpuError> {
@@ -155,34 +189,17 @@ impl Gpu {
 
     async fn open() -> Result<Gpu, GpuError> {
         let adapters = instance().enumerate_adapters(Backends::all()).await;
-        let best = adapters
-            .iter()
-            .filter(|a| accept(&a.limits()).is_ok())
-            .min_by_key(|a| preference(a.get_info().device_type));
-        let Some(adapter) = best else {
-            let found: Vec<_> = adapters.iter().map(report).map(|r| refusal(&r)).collect();
-            let found = if found.is_empty() { "none found".to_string() } else { found.join("; ") };
-            return Err(GpuError::NoAdapter { found });
-        };
-        // Buffers and textures as large as the adapter allows, everything else as every adapter allows.
-        let allowed = adapter.limits();
-        let limits = wgpu::Limits {
-            max_texture_dimension_2d: allowed.max_texture_dimension_2d,
-            max_buffer_size: allowed.max_buffer_size,
-            max_storage_buffer_binding_size: allowed.max_storage_buffer_binding_size,
-            ..required_limits()
-        };
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("burnish"),
-            required_features: optional_features() & adapter.features(),
-            required_limits: limits,
-            ..Default::default()
-        };
-        let report = report(adapter);
+        let adapter = choose(&adapters, |_| true)?;
         let (device, queue) = adapter
-            .request_device(&descriptor)
+            .request_device(&device_descriptor(adapter))
             .await
-            .map_err(|e| GpuError::Open { adapter: report.name.clone(), reason: e.to_string() })?;
+            .map_err(|e| GpuError::Open { adapter: adapter.get_info().name, reason: e.to_string() })?;
+        Ok(Gpu::from_parts(adapter, device, queue))
+    }
+
+    /// A device that a window has opened, with what [`device_descriptor`] asks for. Takes over its callbacks for errors
+    /// and loss: call it once per device and clone the result.
+    pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
         let failure = Arc::new(Failure::default());
         let uncaptured = failure.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| uncaptured.set(error.to_string())));
@@ -193,7 +210,7 @@ impl Gpu {
             }
         });
         let software = adapter.get_info().device_type == DeviceType::Cpu;
-        Ok(Gpu { device, queue, report, software, failure })
+        Gpu { device, queue, report: report(adapter), software, failure }
     }
 
     /// What the device runs on.
@@ -240,6 +257,6 @@ impl Gpu {
 }
 
 fn refusal(report: &AdapterReport) -> String {
-    let reason = report.accepted.as_ref().err().map_or("", |r| r.as_str());
+    let reason = report.accepted.as_ref().err().map_or("cannot show a window", |r| r.as_str());
     format!("{} ({}): {reason}", report.name, report.backend)
 }

@@ -1,19 +1,26 @@
 //! The wgpu renderer of Burnish: one code path with and without a window.
 //!
-//! [`Gpu`] opens an adapter, [`Renderer`] holds a scene on it and draws [`View`]s into linear pictures. Lighting
-//! formulas live in `burnish-core` as leaves; here are the passes that join and run them.
+//! [`Gpu`] opens an adapter or takes a window's, [`Renderer`] holds a scene on it and draws [`View`]s into linear
+//! pictures, [`Viewport`] keeps one on a screen up to date. Lighting formulas live in `burnish-core` as leaves; here are
+//! the passes that join and run them.
 
 pub mod device;
 pub mod error;
+mod frame;
 pub mod layout;
 pub mod pass;
+mod passes;
 pub mod readback;
 pub mod renderer;
+mod resident;
 pub mod scene;
 pub mod shader;
 mod tables;
 mod textures;
+pub mod viewport;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};
 pub use error::RenderError;
+pub use passes::Passes;
 pub use renderer::{Renderer, View};
+pub use viewport::{Drawn, Frame, Picked, Viewport};

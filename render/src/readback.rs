@@ -1,5 +1,7 @@
 //! Textures and buffers back to the CPU.
 
+use glam::{UVec2, Vec4};
+
 use crate::device::{Gpu, GpuError};
 
 /// The bytes of one level of one layer, rows without padding.
@@ -31,6 +33,26 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, layer: u32) 
     gpu.queue.submit([encoder.finish()]);
     let bytes = map(gpu, &buffer)?;
     Ok(bytes.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+}
+
+/// One texel of a texture of four 32-bit or 16-bit floats.
+pub fn read_texel(gpu: &Gpu, texture: &wgpu::Texture, at: UVec2) -> Result<Vec4, GpuError> {
+    let buffer = read_buffer_of(gpu, 16);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: at.x, y: at.y, z: 0 }, ..texture.as_image_copy() },
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout: Default::default() },
+        wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = map(gpu, &buffer)?;
+    Ok(match texture.format() {
+        wgpu::TextureFormat::Rgba16Float => {
+            let half = |i: usize| half::f16::from_bits(u16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]])).to_f32();
+            Vec4::new(half(0), half(1), half(2), half(3))
+        }
+        _ => bytemuck::pod_read_unaligned(&bytes),
+    })
 }
 
 /// The bytes of a buffer that allows `COPY_SRC`.

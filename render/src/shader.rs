@@ -1,5 +1,6 @@
 //! The shaders of the passes: which leaves and which own files each is joined from, in order.
 
+use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
 use burnish_core::surface::layered;
@@ -58,8 +59,12 @@ pub static FORWARD: Shader = Shader {
 pub static ACCUMULATE: Shader =
     Shader { name: "accumulate", leaves: &[], files: &[include_str!("pass/accumulate/accumulate.wgsl")] };
 
+/// Shows a picture on a screen.
+pub static DISPLAY: Shader =
+    Shader { name: "display", leaves: &[&tone::LEAF], files: &[TYPES, include_str!("pass/display/display.wgsl")] };
+
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE];
+pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE, &DISPLAY];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "

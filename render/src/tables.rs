@@ -10,6 +10,9 @@ use burnish_core::surface::ggx::Masking;
 use burnish_core::surface::ggx::albedo::AlbedoTable;
 use glam::Vec3;
 
+/// Curves that no material uses at the moment and whose tables are kept: a preset is often tried and taken back.
+const SPARE_CURVES: usize = 32;
+
 /// Where a material's metal finds its curve, as [`crate::layout::types::MaterialData`] stores it.
 #[derive(Clone, Copy, Debug)]
 pub struct Metal {
@@ -30,22 +33,32 @@ pub struct Tables {
     metals: Vec<Metal>,
 }
 
+/// Split-sum tables of the curves seen lately, the last used first.
+#[derive(Default)]
+pub struct TableCache {
+    known: Vec<(Arc<Fresnel>, Masking, Arc<[f32]>)>,
+}
+
 impl Tables {
-    /// Builds the tables of all materials; presets that share a curve share its tables.
-    pub fn new(scene: &Scene, masking: Masking) -> Tables {
+    /// Joins the tables of all materials; presets that share a curve share its tables.
+    pub fn new(cache: &mut TableCache, scene: &Scene, masking: Masking) -> Tables {
         let mut floats = AlbedoTable::get().flat().to_vec();
-        let mut known: Vec<(Arc<Fresnel>, Metal)> = Vec::new();
+        let mut seen: Vec<(&Arc<Fresnel>, Metal)> = Vec::new();
         let mut metals = Vec::with_capacity(scene.materials.len());
         for material in &scene.materials {
             let Reflectance::Preset { fresnel, .. } = &material.reflectance else {
                 metals.push(Metal::of_base_color(material.base_color));
                 continue;
             };
-            let found = known.iter().find(|(seen, _)| Arc::ptr_eq(seen, fresnel) || seen == fresnel);
-            let metal = found.map(|(_, metal)| *metal).unwrap_or_else(|| Metal::new(fresnel, masking, &mut floats));
-            known.push((fresnel.clone(), metal));
+            let found = seen.iter().find(|(other, _)| same(other, fresnel));
+            let metal = match found {
+                Some((_, metal)) => *metal,
+                None => Metal::new(fresnel, masking, &mut floats, cache),
+            };
+            seen.push((fresnel, metal));
             metals.push(metal);
         }
+        cache.known.truncate(seen.len() + SPARE_CURVES);
         Tables { floats, metals }
     }
 
@@ -55,15 +68,32 @@ impl Tables {
     }
 }
 
+fn same(a: &Arc<Fresnel>, b: &Arc<Fresnel>) -> bool {
+    Arc::ptr_eq(a, b) || a == b
+}
+
+impl TableCache {
+    fn mean_table(&mut self, fresnel: &Arc<Fresnel>, masking: Masking) -> Arc<[f32]> {
+        let place = self.known.iter().position(|(other, of, _)| *of == masking && same(other, fresnel));
+        let entry = match place {
+            Some(place) => self.known.remove(place),
+            None => (fresnel.clone(), masking, classical::mean_fresnel_table(fresnel, masking).into()),
+        };
+        let table = entry.2.clone();
+        self.known.insert(0, entry);
+        table
+    }
+}
+
 impl Metal {
     fn of_base_color(f0: Vec3) -> Metal {
         let fresnel = Fresnel::Rescaled { f0 };
         Metal { form: fresnel.form(), f0, n: Vec3::ONE, k: Vec3::ZERO, mean: fresnel.mean(), table: 0, albedo_table: 0 }
     }
 
-    fn new(fresnel: &Fresnel, masking: Masking, floats: &mut Vec<f32>) -> Metal {
+    fn new(fresnel: &Arc<Fresnel>, masking: Masking, floats: &mut Vec<f32>, cache: &mut TableCache) -> Metal {
         let mut metal = Metal { form: fresnel.form(), mean: fresnel.mean(), ..Metal::of_base_color(fresnel.f0()) };
-        match fresnel {
+        match &**fresnel {
             Fresnel::Rescaled { .. } | Fresnel::Schlick { .. } => return metal,
             Fresnel::Conductor { n, k } => {
                 metal.n = *n;
@@ -75,7 +105,7 @@ impl Metal {
             }
         }
         metal.albedo_table = floats.len() as u32;
-        floats.extend(classical::mean_fresnel_table(fresnel, masking));
+        floats.extend(cache.mean_table(fresnel, masking).iter());
         metal
     }
 }

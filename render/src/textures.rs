@@ -1,6 +1,6 @@
 //! Images of materials as textures with mips, and their samplers.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use burnish_core::color::rgb::{linear_from_srgb, srgb_from_linear};
@@ -13,7 +13,8 @@ use crate::device::Gpu;
 
 /// Textures already uploaded, by image and encoding.
 pub struct TextureCache {
-    views: HashMap<(usize, bool), Arc<wgpu::TextureView>>,
+    /// By address; the image beside the view keeps it taken.
+    views: HashMap<(usize, bool), (Arc<Image>, Arc<wgpu::TextureView>)>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
     white: Arc<wgpu::TextureView>,
 }
@@ -32,24 +33,32 @@ impl TextureCache {
     }
 
     /// The image as texture; sRGB images are decoded when they are sampled.
-    pub fn view(&mut self, gpu: &Gpu, index: usize, image: &Image, srgb: bool) -> Arc<wgpu::TextureView> {
-        self.views
-            .entry((index, srgb))
-            .or_insert_with(|| {
-                let encoding = match (&image.texels, srgb) {
-                    (Texels::Unorm8(_), true) => Encoding::Srgb8,
-                    (Texels::Unorm8(_), false) => Encoding::Linear8,
-                    (Texels::Unorm16(_), _) => Encoding::Half,
-                };
-                upload(gpu, &image.name, first_level(image, srgb), encoding)
-            })
-            .clone()
+    pub fn view(&mut self, gpu: &Gpu, image: &Arc<Image>, srgb: bool) -> Arc<wgpu::TextureView> {
+        let (_, view) = self.views.entry((address(image), srgb)).or_insert_with(|| {
+            let encoding = match (&image.texels, srgb) {
+                (Texels::Unorm8(_), true) => Encoding::Srgb8,
+                (Texels::Unorm8(_), false) => Encoding::Linear8,
+                (Texels::Unorm16(_), _) => Encoding::Half,
+            };
+            (image.clone(), upload(gpu, &image.name, first_level(image, srgb), encoding))
+        });
+        view.clone()
+    }
+
+    /// Forgets textures of all other images.
+    pub fn retain(&mut self, images: &[Arc<Image>]) {
+        let kept: HashSet<_> = images.iter().map(address).collect();
+        self.views.retain(|(image, _), _| kept.contains(image));
     }
 
     /// The sampler with these settings.
     pub fn sampler(&mut self, gpu: &Gpu, sampler: Sampler) -> wgpu::Sampler {
         self.samplers.entry(sampler).or_insert_with(|| create_sampler(gpu, sampler)).clone()
     }
+}
+
+fn address(image: &Arc<Image>) -> usize {
+    Arc::as_ptr(image).addr()
 }
 
 /// How texels are stored.

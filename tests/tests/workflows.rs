@@ -28,6 +28,7 @@ fn main() {
 fn free_of_the_gpu() -> Vec<Trial> {
     vec![
         trial("help lists every command and ends well", &[], help_lists_every_command),
+        trial("without a display the window is refused in one line", &[], a_window_without_a_display),
         trial("what makes no sense is refused in one line with exit code 2", &[], usage_errors),
         trial("a file that cannot be read is named in one line with exit code 3", &[], unreadable_files),
         trial("info describes the workbench in words and in JSON", &[], info_describes_the_workbench),
@@ -101,7 +102,7 @@ fn text(path: &Path) -> &str {
 }
 
 fn help_lists_every_command() {
-    for args in [&[][..], &["--help"], &["help"]] {
+    for args in [&["--help"], &["help"]] {
         let help = burnish(args).succeeded().out;
         for command in ["render", "info", "presets", "compare", "doctor", "Exit codes"] {
             assert!(help.contains(command), "{command} is missing in: {help}");
@@ -111,6 +112,17 @@ fn help_lists_every_command() {
     for option in ["--metal", "--spp-jitter", "--camera", "--tone"] {
         assert!(burnish(&["render", "--help"]).succeeded().out.contains(option), "{option}");
     }
+}
+
+fn a_window_without_a_display() {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    // With a display a window would open, and would have to be closed by hand.
+    if cfg!(target_os = "linux") && !["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set) {
+        burnish(&[]).failed(RESOURCES, &["display", "burnish render"]);
+        burnish(&["gallery:workbench"]).failed(RESOURCES, &["display"]);
+    }
+    burnish(&["none/absent.glb"]).failed(INPUT, &["absent.glb"]);
+    burnish(&["gallery:workbench", "--env", "absent.hdr"]).failed(INPUT, &["absent.hdr"]);
 }
 
 fn usage_errors() {

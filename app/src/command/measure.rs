@@ -236,7 +236,7 @@ fn classical_ball(gpu: &Gpu, environment: &Arc<Environment>, args: &Ball) -> Res
     let mut renderer = Renderer::new(gpu, &ball(environment, 1.0)).map_err(Failure::resources)?;
     let mut rows = Vec::new();
     for &roughness in &args.roughness {
-        renderer.set_materials(&[white(roughness)]);
+        renderer.set_materials(&[white(roughness)]).map_err(Failure::resources)?;
         let alpha = roughness * roughness;
         let exact: Vec<_> = hits
             .par_iter()

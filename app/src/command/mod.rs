@@ -4,6 +4,7 @@ mod compare;
 mod doctor;
 mod info;
 mod measure;
+pub mod open;
 mod presets;
 mod render;
 

@@ -28,7 +28,7 @@ pub use folder::FolderResolver;
 pub use report::{Cause, Fault, ImportError, Notice};
 pub use resolve::{ResolveError, Resolver};
 
-use crate::scene::{Environment, Scene};
+use crate::scene::{Environment, Image, Scene};
 use budget::Meter;
 use report::Report;
 
@@ -138,6 +138,15 @@ pub fn load_environment(path: &Path) -> Result<(Environment, Vec<Notice>), Impor
     let budget = Budget::default();
     let (bytes, name) = read_named(path, &budget)?;
     environment_from_bytes(&bytes, &name, &budget)
+}
+
+/// Reads a picture for a texture (`.png`, `.jpg`; the content decides) with the default budget.
+pub fn load_image(path: &Path) -> Result<Image, ImportError> {
+    let budget = Budget::default();
+    let (bytes, name) = read_named(path, &budget)?;
+    let at = |cause| ImportError::one(&name, "picture", cause);
+    let encoded = picture::Encoded::open(bytes, name.clone(), &mut Meter::new(budget)).map_err(at)?;
+    encoded.decode().map_err(at)
 }
 
 /// Bytes of a file with the name by which messages call it.

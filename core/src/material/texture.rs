@@ -87,6 +87,23 @@ impl Material {
         ]
     }
 
+    /// The slot of a role.
+    pub fn texture_mut(&mut self, role: TextureRole) -> &mut Option<TextureRef> {
+        match role {
+            TextureRole::BaseColor => &mut self.base_color_texture,
+            TextureRole::MetallicRoughness => &mut self.metallic_roughness_texture,
+            TextureRole::Normal => &mut self.normal_texture,
+            TextureRole::Occlusion => &mut self.occlusion_texture,
+            TextureRole::Emission => &mut self.emission_texture,
+            TextureRole::Specular => &mut self.specular_texture,
+            TextureRole::SpecularColor => &mut self.specular_color_texture,
+            TextureRole::Coat => &mut self.coat_texture,
+            TextureRole::CoatRoughness => &mut self.coat_roughness_texture,
+            TextureRole::CoatNormal => &mut self.coat_normal_texture,
+            TextureRole::Anisotropy => &mut self.anisotropy_texture,
+        }
+    }
+
     /// The same material with the textures of another.
     pub fn with_textures_of(self, other: &Material) -> Material {
         Material {
@@ -136,6 +153,10 @@ mod tests {
             anisotropy_texture: texture(10),
             ..Material::default()
         };
+        for role in TextureRole::ALL {
+            let slot = textured.clone().texture_mut(role).map(|t| t.image);
+            assert_eq!(slot, Some(role as usize), "{role:?}");
+        }
         let taken = Material::default().with_textures_of(&textured).textures();
         let images: Vec<_> = taken.iter().flatten().map(|t| t.image).collect();
         assert_eq!(images, (0..TextureRole::ALL.len()).collect::<Vec<_>>());

@@ -3,6 +3,7 @@
 mod camera;
 mod environment;
 pub mod gallery;
+mod pick;
 mod validate;
 
 use std::sync::Arc;
@@ -11,6 +12,7 @@ use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::material::Material;
 
+pub use pick::{Picked, Ray};
 pub use validate::Fault;
 
 /// Everything that a picture is made from.

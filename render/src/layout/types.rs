@@ -51,6 +51,7 @@ macro_rules! shared {
 /// Every shared struct.
 pub const STRUCTS: &[Struct] = &[
     ViewData::LAYOUT,
+    DisplayData::LAYOUT,
     SourceData::LAYOUT,
     EnvironmentStep::LAYOUT,
     TextureSlot::LAYOUT,
@@ -121,6 +122,16 @@ shared! {
         prefiltered_mips: f32,
         source_count: u32,
         wide_alpha: f32,
+        pad0: u32,
+        pad1: u32,
+    }
+}
+
+shared! {
+    /// How a picture is shown.
+    pub struct DisplayData {
+        factor: f32,
+        tone: u32,
         pad0: u32,
         pad1: u32,
     }

@@ -49,6 +49,16 @@ struct ViewData {
     pad1: u32,
 }
 
+// How a picture is shown.
+struct DisplayData {
+    // From summed to exposed radiance.
+    factor: f32,
+    // One of the TONE_ constants.
+    tone: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
 // A small bright source of the environment, in its own frame.
 struct SourceData {
     direction: vec3f,

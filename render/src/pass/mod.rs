@@ -2,6 +2,7 @@
 
 pub mod accumulate;
 pub mod classical;
+pub mod display;
 pub mod environment;
 pub mod forward;
 pub mod gbuffer;

@@ -4,7 +4,7 @@ use crate::device::Gpu;
 use crate::pass::environment::{EnvironmentMaps, cube_sampler, cube_view};
 use crate::pass::gbuffer::GBuffer;
 use crate::pass::shadow::{self, Shadows};
-use crate::pass::{buffer_entry, cleared, fullscreen_pipeline, texture_entry};
+use crate::pass::{attachment, buffer_entry, cleared, fullscreen_pipeline, texture_entry};
 use crate::shader;
 
 /// Layout of what `shade.wgsl` reads at group 2.
@@ -116,19 +116,22 @@ impl ClassicalPass {
         gpu.device.create_bind_group(&descriptor)
     }
 
-    /// Writes every pixel of the target.
+    /// Writes every pixel of some rows of a target.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         groups: [&wgpu::BindGroup; 3],
+        rows: std::ops::Range<u32>,
     ) {
+        let whole = rows.start == 0 && rows.end == target.texture().height();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("classical"),
-            color_attachments: &[cleared(target)],
+            color_attachments: &[if whole { cleared(target) } else { attachment(target, wgpu::LoadOp::Load) }],
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);
+        pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
         for (index, group) in groups.into_iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);
         }

@@ -1,8 +1,10 @@
 //! Shadow maps of the punctual lights: one layer for a spot or directional light, six for a point light.
 //!
-//! They are rendered once for a scene and kept until geometry or lights change.
+//! They are rendered once for a scene and kept until what casts shadows or the places of the lights change.
 
-use burnish_core::scene::{Bounds, Light, LightKind};
+mod casters;
+
+use burnish_core::scene::{Bounds, Light, LightKind, Scene};
 use glam::camera::rh::{proj::directx as proj, view};
 use glam::{Mat4, Vec3};
 
@@ -12,6 +14,7 @@ use crate::pass::MeshPipeline;
 use crate::pass::gbuffer::{DEPTH_FORMAT, depth_state};
 use crate::scene::{GpuScene, Variant};
 use crate::shader;
+use casters::Caster;
 
 /// Edge of a shadow map in texels.
 pub const RESOLUTION: u32 = 2048;
@@ -28,6 +31,9 @@ pub struct Shadows {
     pub(crate) maps: wgpu::TextureView,
     /// Lights that got no map because there are too many.
     pub unshadowed: Vec<String>,
+    /// What the maps show: from where, and what.
+    matrices: Vec<Mat4>,
+    casters: Vec<Caster>,
 }
 
 /// Pipelines that fill the maps.
@@ -60,19 +66,20 @@ impl ShadowPass {
         ShadowPass { opaque: pipelines(false), masked: pipelines(true) }
     }
 
-    /// Renders the maps of all lights.
-    pub fn build(
+    /// The lights with their maps, which are rendered only where `before` does not hold the same.
+    pub(crate) fn build(
         &self,
         gpu: &Gpu,
-        lights: &[Light],
+        scene: &Scene,
         bounds: Bounds,
-        scene: &GpuScene,
+        on_gpu: &GpuScene,
         scene_layout: &wgpu::BindGroupLayout,
+        before: Option<&Shadows>,
     ) -> Shadows {
         let mut data = Vec::new();
         let mut matrices = Vec::new();
         let mut unshadowed = Vec::new();
-        for light in lights {
+        for light in &scene.lights {
             let views = light_views(light, bounds);
             let fits = matrices.len() + views.len() <= LAYERS_MAX as usize;
             let layer = if fits && !views.is_empty() { matrices.len() as u32 } else { SHADOW_NONE };
@@ -83,40 +90,40 @@ impl ShadowPass {
             }
             data.push(light_data(light, bounds, layer));
         }
-        let maps = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shadow maps"),
-            size: wgpu::Extent3d {
-                width: if matrices.is_empty() { 1 } else { RESOLUTION },
-                height: if matrices.is_empty() { 1 } else { RESOLUTION },
-                depth_or_array_layers: matrices.len().max(1) as u32,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        for (layer, matrix) in matrices.iter().enumerate() {
-            self.render_layer(gpu, &maps, layer as u32, *matrix, scene, scene_layout);
-        }
         let light_count = data.len() as u32;
         if data.is_empty() {
             data.push(bytemuck::Zeroable::zeroed());
         }
-        if matrices.is_empty() {
-            matrices.push(Mat4::IDENTITY);
-        }
         let storage = wgpu::BufferUsages::STORAGE;
+        let lights = gpu.buffer("lights", bytemuck::cast_slice(&data), storage);
+        let casters = casters::list(scene);
+        if let Some(before) = before.filter(|before| before.matrices == matrices && before.casters == casters) {
+            return Shadows {
+                lights,
+                light_count,
+                unshadowed,
+                matrices,
+                casters,
+                clip_from_world: before.clip_from_world.clone(),
+                maps: before.maps.clone(),
+            };
+        }
+        let maps = create_maps(gpu, matrices.len());
+        for (layer, matrix) in matrices.iter().enumerate() {
+            self.render_layer(gpu, &maps, layer as u32, *matrix, on_gpu, scene_layout);
+        }
+        let stored = if matrices.is_empty() { &[Mat4::IDENTITY] } else { matrices.as_slice() };
         Shadows {
-            lights: gpu.buffer("lights", bytemuck::cast_slice(&data), storage),
+            lights,
             light_count,
-            clip_from_world: gpu.buffer("shadow matrices", bytemuck::cast_slice(&matrices), storage),
+            unshadowed,
+            clip_from_world: gpu.buffer("shadow matrices", bytemuck::cast_slice(stored), storage),
             maps: maps.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2Array),
                 ..Default::default()
             }),
-            unshadowed,
+            matrices,
+            casters,
         }
     }
 
@@ -163,6 +170,20 @@ impl ShadowPass {
         }
         gpu.queue.submit([encoder.finish()]);
     }
+}
+
+fn create_maps(gpu: &Gpu, layers: usize) -> wgpu::Texture {
+    let edge = if layers == 0 { 1 } else { RESOLUTION };
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadow maps"),
+        size: wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: layers.max(1) as u32 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
 }
 
 /// Reads the maps; lit where the point is not behind the stored depth.

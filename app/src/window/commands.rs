@@ -1,0 +1,206 @@
+//! The table of commands: menus, shortcuts, the palette and the shortcut page are made from it.
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+use super::session::Session;
+
+/// What a user can ask for without an argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// Opens the start page.
+    Start,
+    /// Opens a model or document.
+    Open,
+    /// Lights the scene with an HDRI.
+    LoadEnvironment,
+    /// Saves the document.
+    Save,
+    /// Saves it under another name.
+    SaveAs,
+    /// Writes the picture.
+    SaveImage,
+    /// Ends the program.
+    Quit,
+    /// Takes back the last edit.
+    Undo,
+    /// Does it again.
+    Redo,
+    /// Copies the material.
+    CopyMaterial,
+    /// Makes the selected materials like the copied one.
+    PasteMaterial,
+    /// Adds a material.
+    NewMaterial,
+    /// Copies the material under a new name.
+    DuplicateMaterial,
+    /// Makes all materials like this one.
+    ApplyToAll,
+    /// Makes the materials of the selected objects like this one.
+    ApplyToSelected,
+    /// Hides the selected objects.
+    Hide,
+    /// Hides all others.
+    Isolate,
+    /// Shows all objects.
+    ShowAll,
+    /// Frames the selection.
+    Frame,
+    /// Frames everything.
+    FrameAll,
+    /// From the front.
+    ViewFront,
+    /// From the right.
+    ViewRight,
+    /// From above.
+    ViewTop,
+    /// Parallel or perspective.
+    Orthographic,
+    /// Keeps the point of view.
+    SaveCamera,
+    /// The palette.
+    Palette,
+    /// The shortcut page.
+    Shortcuts,
+    /// Larger.
+    ScaleUp,
+    /// Smaller.
+    ScaleDown,
+    /// Natural size.
+    ScaleReset,
+    /// Light or dark.
+    Theme,
+    /// Panels where they were at first.
+    ResetLayout,
+}
+
+/// Where a command stands in the menu bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Documents and files.
+    File,
+    /// History.
+    Edit,
+    /// Materials.
+    Material,
+    /// Objects.
+    Object,
+    /// Camera and window.
+    View,
+    /// Help.
+    Help,
+}
+
+impl Menu {
+    /// In the order of the bar.
+    pub const ALL: [Menu; 6] = [Menu::File, Menu::Edit, Menu::Material, Menu::Object, Menu::View, Menu::Help];
+
+    /// Title in the bar.
+    pub fn title(self) -> &'static str {
+        match self {
+            Menu::File => "File",
+            Menu::Edit => "Edit",
+            Menu::Material => "Material",
+            Menu::Object => "Object",
+            Menu::View => "View",
+            Menu::Help => "Help",
+        }
+    }
+}
+
+/// A line of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// What it does.
+    pub command: Command,
+    /// Where it stands.
+    pub menu: Menu,
+    /// Title for people.
+    pub title: &'static str,
+    /// Keys; those without a modifier act only while no text is edited.
+    pub shortcut: Option<KeyboardShortcut>,
+    /// One sentence.
+    pub help: &'static str,
+}
+
+const fn key(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn ctrl(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+const fn entry(
+    menu: Menu,
+    command: Command,
+    title: &'static str,
+    shortcut: Option<KeyboardShortcut>,
+    help: &'static str,
+) -> Entry {
+    Entry { command, menu, title, shortcut, help }
+}
+
+/// All commands, in the order of the menus.
+pub const TABLE: &[Entry] = &[
+    entry(Menu::File, Command::Start, "Start page", None, "Recent documents and the default workbench."),
+    entry(Menu::File, Command::Open, "Open...", ctrl(Key::O), "Open a model (glTF, OBJ) or a document."),
+    entry(Menu::File, Command::LoadEnvironment, "Load HDRI...", ctrl(Key::L), "Light the scene with an HDR picture."),
+    entry(Menu::File, Command::Save, "Save", ctrl(Key::S), "Save the document."),
+    entry(Menu::File, Command::SaveAs, "Save as...", ctrl_shift(Key::S), "Save the document under another name."),
+    entry(Menu::File, Command::SaveImage, "Save image...", ctrl(Key::E), "Write the picture as PNG or EXR, any size."),
+    entry(Menu::File, Command::Quit, "Quit", ctrl(Key::Q), "End the program."),
+    entry(Menu::Edit, Command::Undo, "Undo", ctrl(Key::Z), "Take back the last edit."),
+    entry(Menu::Edit, Command::Redo, "Redo", ctrl_shift(Key::Z), "Do the last undone edit again."),
+    entry(Menu::Material, Command::NewMaterial, "New material", ctrl(Key::N), "Add a material."),
+    entry(Menu::Material, Command::DuplicateMaterial, "Duplicate material", ctrl(Key::D), "Copy it under a new name."),
+    entry(Menu::Material, Command::CopyMaterial, "Copy material", ctrl_shift(Key::C), "Remember the material."),
+    entry(
+        Menu::Material,
+        Command::PasteMaterial,
+        "Paste material",
+        ctrl_shift(Key::V),
+        "Make the selected materials like the remembered one.",
+    ),
+    entry(
+        Menu::Material,
+        Command::ApplyToSelected,
+        "Apply to selected objects",
+        None,
+        "Give the selected objects this material.",
+    ),
+    entry(Menu::Material, Command::ApplyToAll, "Apply to all objects", None, "Give every object this material."),
+    entry(Menu::Object, Command::Hide, "Hide", key(Key::H), "Hide the selected objects."),
+    entry(Menu::Object, Command::Isolate, "Isolate", key(Key::I), "Hide all other objects."),
+    entry(Menu::Object, Command::ShowAll, "Show all", ctrl_shift(Key::H), "Show every object."),
+    entry(Menu::View, Command::Frame, "Frame selection", key(Key::F), "Bring the selected objects into view."),
+    entry(Menu::View, Command::FrameAll, "Frame all", key(Key::Home), "Bring everything into view."),
+    entry(Menu::View, Command::ViewFront, "Front view", key(Key::Num1), "Look from the front."),
+    entry(Menu::View, Command::ViewRight, "Right view", key(Key::Num3), "Look from the right."),
+    entry(Menu::View, Command::ViewTop, "Top view", key(Key::Num7), "Look from above."),
+    entry(Menu::View, Command::Orthographic, "Orthographic", key(Key::Num5), "Parallel or perspective."),
+    entry(Menu::View, Command::SaveCamera, "Save camera", None, "Keep this point of view."),
+    entry(Menu::View, Command::ScaleUp, "Larger interface", ctrl(Key::Plus), "Enlarge text and widgets."),
+    entry(Menu::View, Command::ScaleDown, "Smaller interface", ctrl(Key::Minus), "Shrink text and widgets."),
+    entry(Menu::View, Command::ScaleReset, "Natural size", ctrl(Key::Num0), "Text and widgets at their natural size."),
+    entry(Menu::View, Command::Theme, "Light or dark", None, "Change between the light and the dark theme."),
+    entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
+    entry(Menu::Help, Command::Palette, "Command palette", ctrl(Key::K), "Find any command by its name."),
+    entry(Menu::Help, Command::Shortcuts, "Shortcuts", key(Key::F1), "All shortcuts and gestures."),
+];
+
+impl Command {
+    /// True where the command can do something now.
+    pub fn is_enabled(self, session: &Session) -> bool {
+        match self {
+            Command::Undo => !session.history().past().is_empty(),
+            Command::Redo => session.history().future().next().is_some(),
+            Command::PasteMaterial => session.clipboard.is_some(),
+            Command::Hide | Command::Isolate | Command::ApplyToSelected => !session.selection.objects.is_empty(),
+            _ => true,
+        }
+    }
+}

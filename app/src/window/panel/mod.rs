@@ -1,0 +1,145 @@
+//! The panels, one file each. A panel keeps what only it shows; documents, scenes and files are the session's.
+
+mod environment;
+mod history;
+mod material;
+mod presets;
+mod reflectance;
+mod scene_tree;
+mod start;
+mod status;
+mod viewport;
+
+use eframe::egui::{self, WidgetText};
+use serde::{Deserialize, Serialize};
+
+use super::preferences::Preferences;
+use super::request::Requests;
+use super::session::Session;
+use super::stage::Stage;
+
+pub use environment::EnvironmentPanel;
+pub use history::HistoryPanel;
+pub use material::MaterialPanel;
+pub use presets::PresetsPanel;
+pub use reflectance::ReflectancePanel;
+pub use scene_tree::SceneTree;
+pub use start::StartPage;
+pub use status::StatusLine;
+pub use viewport::ViewportPanel;
+
+/// What every panel may use.
+pub struct Context<'a> {
+    /// What is open.
+    pub session: &'a mut Session,
+    /// The user's choices.
+    pub preferences: &'a mut Preferences,
+    /// The picture.
+    pub stage: &'a mut Stage,
+    /// Wishes for after the frame.
+    pub requests: &'a mut Requests,
+}
+
+/// A panel that can be docked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pane {
+    /// The picture.
+    Viewport,
+    /// Objects.
+    Scene,
+    /// Factors and textures.
+    Material,
+    /// Metals.
+    Presets,
+    /// Light and view.
+    Environment,
+    /// Reflectance against angle.
+    Reflectance,
+    /// Steps to undo.
+    History,
+}
+
+impl Pane {
+    /// All of them.
+    pub const ALL: [Pane; 7] = [
+        Pane::Viewport,
+        Pane::Scene,
+        Pane::Material,
+        Pane::Presets,
+        Pane::Environment,
+        Pane::Reflectance,
+        Pane::History,
+    ];
+
+    /// Title of its tab.
+    pub fn title(self) -> &'static str {
+        match self {
+            Pane::Viewport => "Viewport",
+            Pane::Scene => "Scene",
+            Pane::Material => "Material",
+            Pane::Presets => "Presets",
+            Pane::Environment => "Environment",
+            Pane::Reflectance => "Reflectance",
+            Pane::History => "History",
+        }
+    }
+}
+
+/// The docked panels.
+#[derive(Default)]
+pub struct Panels {
+    /// Also moves the camera on command.
+    pub viewport: ViewportPanel,
+    scene: SceneTree,
+    material: MaterialPanel,
+    presets: PresetsPanel,
+    environment: EnvironmentPanel,
+    reflectance: ReflectancePanel,
+    history: HistoryPanel,
+}
+
+impl Panels {
+    fn ui(&mut self, pane: Pane, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        match pane {
+            Pane::Viewport => self.viewport.ui(ui, context),
+            Pane::Scene => self.scene.ui(ui, context),
+            Pane::Material => self.material.ui(ui, context),
+            Pane::Presets => self.presets.ui(ui, context),
+            Pane::Environment => self.environment.ui(ui, context),
+            Pane::Reflectance => self.reflectance.ui(ui, context),
+            Pane::History => self.history.ui(ui, context),
+        }
+    }
+}
+
+/// Shows docked panels to egui_tiles.
+pub struct Docked<'a, 'b> {
+    /// The panels.
+    pub panels: &'a mut Panels,
+    /// What they use.
+    pub context: &'a mut Context<'b>,
+}
+
+impl egui_tiles::Behavior<Pane> for Docked<'_, '_> {
+    fn pane_ui(&mut self, ui: &mut egui::Ui, _tile: egui_tiles::TileId, pane: &mut Pane) -> egui_tiles::UiResponse {
+        let margin = if *pane == Pane::Viewport { 0 } else { 6 };
+        egui::Frame::new().inner_margin(margin).show(ui, |ui| {
+            if *pane == Pane::Viewport {
+                self.panels.ui(*pane, ui, self.context);
+            } else {
+                egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    self.panels.ui(*pane, ui, self.context);
+                });
+            }
+        });
+        egui_tiles::UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.title().into()
+    }
+
+    fn simplification_options(&self) -> egui_tiles::SimplificationOptions {
+        egui_tiles::SimplificationOptions { all_panes_must_have_tabs: true, ..Default::default() }
+    }
+}

@@ -1,0 +1,207 @@
+//! What is open: the document with its history and files, the scene made of them, the selection.
+//!
+//! Panels read it and edit it through [`Session::edit`]; nothing here draws or starts work.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use burnish_core::document::{Curves, Document, History, MaterialEntry, Missing, Opened, Resolved, Sources, resolve};
+use burnish_core::scene::Scene;
+
+/// What the next command is about.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Selection {
+    /// Keys of objects.
+    pub objects: Vec<String>,
+    /// Index of the material that the inspector shows.
+    pub material: usize,
+}
+
+/// An open document.
+pub struct Session {
+    history: History,
+    sources: Sources,
+    curves: Curves,
+    resolved: Resolved,
+    /// Where the document is saved; `None` before the first time.
+    pub path: Option<PathBuf>,
+    saved: Arc<Document>,
+    /// What is selected.
+    pub selection: Selection,
+    /// The copied material.
+    pub clipboard: Option<Arc<MaterialEntry>>,
+    /// Files that could not be read, with the reason.
+    pub missing: Vec<Missing>,
+    /// Seconds of the window's clock, set once a frame.
+    pub now_secs: f64,
+    /// Counts every change of the document, for whoever wants to notice one.
+    pub revision: u64,
+}
+
+impl Session {
+    /// A session about what was opened; `path` is the document's file if it has one.
+    pub fn new(opened: Opened, path: Option<PathBuf>) -> Session {
+        let Opened { document, sources, missing, notices: _ } = opened;
+        let mut curves = Curves::default();
+        let resolved = resolve(&document, &sources, &mut curves);
+        let history = History::new(document);
+        let saved = history.current().clone();
+        Session {
+            history,
+            sources,
+            curves,
+            resolved,
+            path,
+            saved,
+            selection: Selection::default(),
+            clipboard: None,
+            missing,
+            now_secs: 0.0,
+            revision: 0,
+        }
+    }
+
+    /// The document as it is now.
+    pub fn document(&self) -> &Arc<Document> {
+        self.history.current()
+    }
+
+    /// The scene as it is drawn.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.resolved.scene
+    }
+
+    /// The scene with what stands in for something else.
+    pub fn resolved(&self) -> &Resolved {
+        &self.resolved
+    }
+
+    /// The files of the document.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Past and future.
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Changes the document as one labelled step, see [`History::edit`]; `target` is what is edited.
+    pub fn edit(&mut self, label: &str, target: &str, change: impl FnOnce(&mut Document)) {
+        let before = self.history.current().clone();
+        if self.history.edit(label, target, self.now_secs, change) {
+            self.follow(&before);
+        }
+    }
+
+    /// Ends the running step, such as when a drag ends.
+    pub fn seal(&mut self) {
+        self.history.seal();
+    }
+
+    /// Takes back the last step and returns its label.
+    pub fn undo(&mut self) -> Option<String> {
+        let before = self.history.current().clone();
+        let label = self.history.undo()?.label.clone();
+        self.follow(&before);
+        Some(label)
+    }
+
+    /// Does the last undone step again and returns its label.
+    pub fn redo(&mut self) -> Option<String> {
+        let before = self.history.current().clone();
+        let label = self.history.redo()?.label.clone();
+        self.follow(&before);
+        Some(label)
+    }
+
+    /// Goes to the state after `count` steps from the start.
+    pub fn go_to(&mut self, count: usize) {
+        self.history.go_to(count);
+        self.refresh();
+    }
+
+    /// Takes over files that were read.
+    pub fn edit_sources(&mut self, change: impl FnOnce(&mut Sources)) {
+        change(&mut self.sources);
+        self.missing.retain(|missing| {
+            !self.sources.models.contains_key(&missing.path)
+                && !self.sources.environments.contains_key(&missing.path)
+                && !self.sources.images.contains_key(&missing.path)
+        });
+        self.refresh();
+    }
+
+    /// The document differs from its file.
+    pub fn is_dirty(&self) -> bool {
+        !Arc::ptr_eq(self.document(), &self.saved) && **self.document() != *self.saved
+    }
+
+    /// The document was written to `path` as it is now.
+    pub fn set_saved(&mut self, path: &Path) {
+        self.saved = self.document().clone();
+        self.path = Some(path.into());
+    }
+
+    /// The document has changes that no file holds, such as after a recovery.
+    pub fn set_unsaved(&mut self) {
+        let mut other = Document::clone(self.document());
+        other.scene.clear();
+        self.saved = Arc::new(other);
+    }
+
+    /// Name of the document for people.
+    pub fn title(&self) -> String {
+        let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let of_scene = || match self.document().scene.strip_prefix("gallery:") {
+            Some(name) => Some(name.into()),
+            None => stem(Path::new(&self.document().scene)),
+        };
+        self.path.as_deref().and_then(stem).or_else(of_scene).unwrap_or_else(|| "untitled".into())
+    }
+
+    /// The material that the inspector shows.
+    pub fn material(&self) -> Option<&Arc<MaterialEntry>> {
+        self.document().materials.get(self.selection.material)
+    }
+
+    /// Indices of the materials of the selected objects; the inspector's where none is selected. Each once.
+    pub fn selected_materials(&self) -> Vec<usize> {
+        let scene = self.scene();
+        let keys = self.resolved.object_keys.iter().zip(&scene.instances);
+        let mut of_objects: Vec<usize> =
+            keys.filter(|(key, _)| self.selection.objects.contains(key)).map(|(_, i)| i.material).collect();
+        of_objects.sort_unstable();
+        of_objects.dedup();
+        of_objects.retain(|index| *index < self.document().materials.len());
+        if of_objects.is_empty() && self.selection.material < self.document().materials.len() {
+            of_objects.push(self.selection.material);
+        }
+        of_objects
+    }
+
+    /// Follows a change of the document. The scene stays the same `Arc` where only the view moved.
+    fn follow(&mut self, before: &Document) {
+        let now = self.document();
+        let same = before.materials == now.materials
+            && before.scene == now.scene
+            && before.environment == now.environment
+            && before.assignments == now.assignments
+            && before.objects == now.objects
+            && before.presets == now.presets
+            && before.lighting == now.lighting;
+        if same {
+            self.revision += 1;
+        } else {
+            self.refresh();
+        }
+    }
+
+    fn refresh(&mut self) {
+        self.revision += 1;
+        self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
+        let materials = self.document().materials.len();
+        self.selection.material = self.selection.material.min(materials.saturating_sub(1));
+        self.selection.objects.retain(|key| self.resolved.object_keys.contains(key));
+    }
+}

@@ -1,0 +1,220 @@
+//! Edits of a document. None of them knows history: [`History::edit`](super::History::edit) wraps them.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::{
+    Assignment, CameraEntry, Document, MaterialEntry, ObjectEntry, PresetUse, TextureChoice, material_keys, role_key,
+};
+use crate::lighting::classical;
+use crate::material::preset::{self, Preset};
+use crate::material::{TextureRole, params};
+use crate::param::{self, ParamError, ParamValue};
+use crate::scene::Scene;
+
+/// What [`Document::assign_preset`] does with the textures of the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Assigned {
+    /// The preset replaces the reflectance only; normals, occlusion, roughness and anisotropy stay.
+    #[default]
+    KeepTextures,
+    /// All textures are cleared.
+    ReplaceTextures,
+}
+
+impl Document {
+    /// Gives every material of the model an entry. Entries stay where they are, also those whose source is gone.
+    pub fn sync(&mut self, model: &Scene) {
+        let known: BTreeSet<String> = self.materials.iter().filter_map(|entry| entry.source.clone()).collect();
+        for key in material_keys(model) {
+            if !known.contains(&key) {
+                let name = self.free_name(if key.is_empty() { "material" } else { &key });
+                let entry = MaterialEntry { name, source: Some(key), ..MaterialEntry::default() };
+                self.materials.push(Arc::new(entry));
+            }
+        }
+    }
+
+    /// `name`, or `name 2`, `name 3` ... where it is taken by a material.
+    pub fn free_name(&self, name: &str) -> String {
+        free(name, |candidate| self.materials.iter().any(|entry| entry.name == candidate))
+    }
+
+    /// The material for editing.
+    pub fn material_mut(&mut self, index: usize) -> Option<&mut MaterialEntry> {
+        self.materials.get_mut(index).map(Arc::make_mut)
+    }
+
+    /// Puts a metal on a material. One that does not come with the program is stored in the document.
+    pub fn assign_preset(&mut self, index: usize, metal: &Preset, textures: Assigned) {
+        let Some(entry) = self.material_mut(index) else { return };
+        let kept = entry.preset.take().unwrap_or_default();
+        entry.preset = Some(PresetUse { id: metal.id.clone(), ..kept });
+        if textures == Assigned::ReplaceTextures {
+            entry.textures = TextureRole::ALL.into_iter().map(|role| (role_key(role), TextureChoice::None)).collect();
+        }
+        let built_in = preset::library().iter().any(|known| known == metal);
+        if !built_in && !self.presets.iter().any(|known| **known == *metal) {
+            self.presets.retain(|known| known.id != metal.id);
+            self.presets.push(Arc::new(metal.clone()));
+        }
+    }
+
+    /// Takes the metal off: the base colour counts again.
+    pub fn clear_preset(&mut self, index: usize) {
+        if let Some(entry) = self.material_mut(index) {
+            entry.preset = None;
+        }
+    }
+
+    /// Sets the Fresnel form of the metal of a material; `None` follows the lighting settings.
+    pub fn set_fresnel(&mut self, index: usize, form: Option<&str>) {
+        if let Some(preset) = self.material_mut(index).and_then(|entry| entry.preset.as_mut()) {
+            preset.fresnel = form.map(Into::into);
+        }
+    }
+
+    /// Sets a factor of a material; one of the wrong kind or out of range is refused.
+    pub fn set_value(&mut self, index: usize, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        let spec = param::find(params::PARAMS, key)?;
+        let json = spec.json(value);
+        spec.from_json(&json)?;
+        if let Some(entry) = self.material_mut(index) {
+            entry.values.insert(spec.key.into(), json);
+        }
+        Ok(())
+    }
+
+    /// Gives a factor back to the source of the material.
+    pub fn reset_value(&mut self, index: usize, key: &str) {
+        if let Some(entry) = self.material_mut(index) {
+            entry.values.remove(key);
+        }
+    }
+
+    /// Puts something into a texture slot; `None` gives it back to the model.
+    pub fn set_texture(&mut self, index: usize, role: TextureRole, choice: Option<TextureChoice>) {
+        let Some(entry) = self.material_mut(index) else { return };
+        match choice {
+            Some(choice) => _ = entry.textures.insert(role_key(role), choice),
+            None => _ = entry.textures.remove(&role_key(role)),
+        }
+    }
+
+    /// Adds a material that starts from the default one; returns its index.
+    pub fn add_material(&mut self, name: &str) -> usize {
+        let name = self.free_name(name);
+        self.materials.push(Arc::new(MaterialEntry { name, ..MaterialEntry::default() }));
+        self.materials.len() - 1
+    }
+
+    /// Adds a copy of a material; returns its index.
+    pub fn duplicate_material(&mut self, index: usize) -> Option<usize> {
+        let copied = MaterialEntry::clone(self.materials.get(index)?);
+        let name = self.free_name(&copied.name);
+        self.materials.push(Arc::new(MaterialEntry { name, ..copied }));
+        Some(self.materials.len() - 1)
+    }
+
+    /// Removes a material that no object has and that is not the only one from its source.
+    pub fn remove_material(&mut self, index: usize) -> bool {
+        let Some(entry) = self.materials.get(index) else { return false };
+        let assigned = self.assignments.iter().any(|a| a.material == entry.name);
+        let first =
+            entry.source.is_some() && self.materials.iter().position(|e| e.source == entry.source) == Some(index);
+        if !assigned && !first {
+            self.materials.remove(index);
+        }
+        !assigned && !first
+    }
+
+    /// Renames a material and what refers to it; a name that is taken gets a number.
+    pub fn rename_material(&mut self, index: usize, name: &str) {
+        let Some(old) = self.materials.get(index).map(|entry| entry.name.clone()) else { return };
+        if name.is_empty() || name == old {
+            return;
+        }
+        let name = self.free_name(name);
+        for assignment in self.assignments.iter_mut().filter(|a| a.material == old) {
+            assignment.material = name.clone();
+        }
+        if let Some(entry) = self.material_mut(index) {
+            entry.name = name;
+        }
+    }
+
+    /// Makes a material look like another: everything but its name and source.
+    pub fn paste_material(&mut self, index: usize, copied: &MaterialEntry) {
+        if let Some(entry) = self.material_mut(index) {
+            let (name, source) = (entry.name.clone(), entry.source.clone());
+            *entry = MaterialEntry { name, source, ..copied.clone() };
+        }
+    }
+
+    /// Gives objects a material.
+    pub fn assign_material(&mut self, objects: &[String], material: &str) {
+        self.assignments.retain(|assignment| !objects.contains(&assignment.object));
+        self.assignments.extend(objects.iter().map(|object| Assignment {
+            object: object.clone(),
+            material: material.into(),
+            other: Default::default(),
+        }));
+    }
+
+    /// Changes what is stored about an object; an entry that says nothing is dropped.
+    pub fn edit_object(&mut self, key: &str, change: impl FnOnce(&mut ObjectEntry)) {
+        let mut entry = self.objects.iter().find(|entry| entry.key == key).cloned().unwrap_or_default();
+        entry.key = key.into();
+        change(&mut entry);
+        let empty = ObjectEntry { key: key.into(), ..ObjectEntry::default() };
+        let place = self.objects.iter().position(|entry| entry.key == key);
+        match (place, entry == empty) {
+            (Some(place), true) => _ = self.objects.remove(place),
+            (Some(place), false) => self.objects[place] = entry,
+            (None, true) => {}
+            (None, false) => self.objects.push(entry),
+        }
+    }
+
+    /// Hides all objects but some.
+    pub fn isolate(&mut self, all: &[String], kept: &[String]) {
+        for key in all {
+            self.edit_object(key, |entry| entry.hidden = !kept.contains(key));
+        }
+    }
+
+    /// Shows all objects.
+    pub fn show_all(&mut self) {
+        let keys: Vec<String> = self.objects.iter().map(|entry| entry.key.clone()).collect();
+        for key in keys {
+            self.edit_object(&key, |entry| entry.hidden = false);
+        }
+    }
+
+    /// Saves a point of view under a name that is free; returns the name.
+    pub fn save_camera(&mut self, name: &str, camera: &CameraEntry) -> String {
+        let name = free(name, |candidate| self.cameras.iter().any(|camera| camera.name == candidate));
+        self.cameras.push(CameraEntry { name: name.clone(), ..camera.clone() });
+        name
+    }
+
+    /// Sets a setting of the lighting method; the default is not stored.
+    pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        let spec = param::find(classical::PARAMS, key)?;
+        let json = spec.json(value);
+        if spec.from_json(&json)? == spec.default() {
+            self.lighting.settings.remove(key);
+        } else {
+            self.lighting.settings.insert(spec.key.into(), json);
+        }
+        Ok(())
+    }
+}
+
+/// The first of `name`, `name 2`, `name 3` ... that is not taken.
+fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+    if !taken(name) {
+        return name.into();
+    }
+    (2u64..).map(|number| format!("{name} {number}")).find(|candidate| !taken(candidate)).unwrap_or_default()
+}

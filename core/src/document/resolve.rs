@@ -1,0 +1,206 @@
+//! From a document and its files to the scene that is drawn.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock};
+
+use super::{
+    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, material_keys, object_keys, placeholder,
+    role_key,
+};
+use crate::material::params::{self, Values};
+use crate::material::preset::{self, Preset};
+use crate::material::{Material, Reflectance, Sampler, TextureRef, TextureRole};
+use crate::param::ParamSpec;
+use crate::scene::{Environment, Image, Scene, gallery};
+use crate::surface::fresnel::Fresnel;
+
+/// Built once: it is the light of every document that names none.
+static STUDIO: LazyLock<Arc<Environment>> = LazyLock::new(|| Arc::new(gallery::studio()));
+
+/// Fresnel curves that were made, so that an edit integrates no spectrum again.
+#[derive(Clone, Debug, Default)]
+pub struct Curves(Vec<(Preset, String, Arc<Fresnel>)>);
+
+impl Curves {
+    /// The curve of a metal in a form; an unknown form is the first of [`preset::FORMS`].
+    pub fn get(&mut self, metal: &Preset, form: &str) -> Option<Arc<Fresnel>> {
+        if let Some((_, _, curve)) = self.0.iter().find(|(known, of, _)| of == form && known == metal) {
+            return Some(curve.clone());
+        }
+        let curve = metal.fresnel(form).or_else(|_| metal.fresnel(preset::FORMS[0])).ok()?;
+        let curve = Arc::new(curve);
+        self.0.push((metal.clone(), form.into(), curve.clone()));
+        Some(curve)
+    }
+}
+
+/// A scene with what stands in for something else in it.
+#[derive(Clone, Debug)]
+pub struct Resolved {
+    /// Its materials are those of the document, in the same order; its instances those of the model.
+    pub scene: Arc<Scene>,
+    /// Keys of the instances, in the same order.
+    pub object_keys: Vec<String>,
+    /// Materials before their changes: what a reset goes back to. In the order of the document's.
+    pub base: Vec<Material>,
+    /// What the document refers to and `sources` does not hold.
+    pub missing: Vec<Missing>,
+    /// What else could not be done as the document says.
+    pub notices: Vec<String>,
+}
+
+/// Makes the scene that a document describes. Never fails: something stands in for what is missing.
+pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> Resolved {
+    let mut missing = Vec::new();
+    let absent = |kind, path: &str| Missing { kind, path: path.into(), reason: "it was not read".into() };
+    let model = sources.models.get(&document.scene).cloned().unwrap_or_else(|| {
+        missing.push(absent(MissingKind::Model, &document.scene));
+        Arc::new(placeholder(document))
+    });
+    let mut scene = Scene::clone(&model);
+    let mut notices = Vec::new();
+
+    let mut images = Images { list: &mut scene.images, by_path: BTreeMap::new(), sources, missing: &mut missing };
+    let model_keys = material_keys(&model);
+    let form = document.lighting.settings().text("fresnel").unwrap_or_default();
+    let (mut base, mut materials) = (Vec::new(), Vec::new());
+    for entry in &document.materials {
+        let place = entry.source.as_ref().and_then(|source| model_keys.iter().position(|key| key == source));
+        let start = place.and_then(|place| model.materials.get(place)).cloned().unwrap_or_default();
+        let mut material = Material { name: entry.name.clone(), ..start.clone() };
+        params::apply(&mut material, &values(entry, &mut notices));
+        set_textures(&mut material, entry, &mut images);
+        set_reflectance(&mut material, entry, document, &form, curves, &mut notices);
+        base.push(start);
+        materials.push(material);
+    }
+    let object_keys = object_keys(&model);
+    place_objects(&mut scene, &object_keys, &model_keys, document, &mut materials);
+    scene.materials = materials;
+
+    let map = document.environment.source.as_ref().and_then(|path| {
+        let found = sources.environments.get(path).cloned();
+        if found.is_none() {
+            missing.push(absent(MissingKind::Environment, path));
+        }
+        found
+    });
+    let map = map.or_else(|| scene.environment.clone()).unwrap_or_else(|| STUDIO.clone());
+    let turned = map.rotation + document.environment.rotation_deg.to_radians() as f32;
+    let strength = map.strength * document.environment.strength as f32;
+    scene.environment = Some(Arc::new(Environment { rotation: turned, strength, ..Environment::clone(&map) }));
+    Resolved { scene: Arc::new(scene), object_keys, base, missing, notices }
+}
+
+/// The changed factors of an entry; what cannot be read is noticed.
+fn values(entry: &MaterialEntry, notices: &mut Vec<String>) -> Values {
+    let mut values = Values::new();
+    for (key, json) in &entry.values {
+        let read = |spec: &'static ParamSpec| spec.from_json(json).map(|value| (spec.key, value));
+        match crate::param::find(params::PARAMS, key).and_then(read) {
+            Ok((key, value)) => _ = values.insert(key, value),
+            Err(error) => notices.push(format!("material `{}`: {error}; it is left as it was", entry.name)),
+        }
+    }
+    values
+}
+
+/// The images of the scene with those from files behind them.
+struct Images<'a> {
+    list: &'a mut Vec<Arc<Image>>,
+    by_path: BTreeMap<String, usize>,
+    sources: &'a Sources,
+    missing: &'a mut Vec<Missing>,
+}
+
+impl Images<'_> {
+    fn of_file(&mut self, path: &str) -> Option<usize> {
+        if let Some(&index) = self.by_path.get(path) {
+            return Some(index);
+        }
+        let Some(image) = self.sources.images.get(path) else {
+            let missing = Missing { kind: MissingKind::Texture, path: path.into(), reason: "it was not read".into() };
+            if !self.missing.contains(&missing) {
+                self.missing.push(missing);
+            }
+            return None;
+        };
+        self.list.push(image.clone());
+        self.by_path.insert(path.into(), self.list.len() - 1);
+        Some(self.list.len() - 1)
+    }
+}
+
+fn set_textures(material: &mut Material, entry: &MaterialEntry, images: &mut Images) {
+    for role in TextureRole::ALL {
+        let Some(choice) = entry.textures.get(&role_key(role)) else { continue };
+        let slot = material.texture_mut(role);
+        let image = match choice {
+            TextureChoice::None => None,
+            TextureChoice::File(path) => images.of_file(path),
+            TextureChoice::Image(index) => Some(*index).filter(|index| *index < images.list.len()),
+        };
+        // A texture that takes the place of another keeps how it is laid over the surface.
+        let laid = slot.unwrap_or(TextureRef {
+            image: 0,
+            sampler: Sampler { mip: Some(Default::default()), ..Sampler::default() },
+            uv_set: 0,
+            transform: glam::Mat3::IDENTITY,
+        });
+        *slot = image.map(|image| TextureRef { image, ..laid });
+    }
+}
+
+fn set_reflectance(
+    material: &mut Material,
+    entry: &MaterialEntry,
+    document: &Document,
+    form: &str,
+    curves: &mut Curves,
+    notices: &mut Vec<String>,
+) {
+    let Some(used) = &entry.preset else { return };
+    let form = used.fresnel.as_deref().unwrap_or(form);
+    let own = document.presets.iter().find(|metal| metal.id == used.id).map(|metal| metal.as_ref());
+    let metal = own.or_else(|| preset::library().iter().find(|metal| metal.id == used.id));
+    match metal.and_then(|metal| curves.get(metal, form)) {
+        Some(fresnel) => material.reflectance = Reflectance::Preset { id: used.id.clone(), fresnel },
+        None => notices.push(format!(
+            "material `{}`: there is no metal `{}`; its base colour counts instead, pick another metal",
+            entry.name, used.id
+        )),
+    }
+}
+
+/// Gives the instances their materials, names and visibility.
+fn place_objects(
+    scene: &mut Scene,
+    keys: &[String],
+    model_keys: &[String],
+    document: &Document,
+    materials: &mut Vec<Material>,
+) {
+    let by_source = |key: &String| document.materials.iter().position(|entry| entry.source.as_ref() == Some(key));
+    let of_model: Vec<Option<usize>> = model_keys.iter().map(by_source).collect();
+    let by_name: BTreeMap<&str, usize> =
+        document.materials.iter().enumerate().map(|(index, entry)| (entry.name.as_str(), index)).collect();
+    let assigned: BTreeMap<&str, usize> = (document.assignments.iter())
+        .filter_map(|a| Some((a.object.as_str(), *by_name.get(a.material.as_str())?)))
+        .collect();
+    let objects: BTreeMap<&str, _> = document.objects.iter().map(|entry| (entry.key.as_str(), entry)).collect();
+    for (instance, key) in scene.instances.iter_mut().zip(keys) {
+        let own = of_model.get(instance.material).copied().flatten();
+        let material = assigned.get(key.as_str()).copied().or(own);
+        instance.material = material.unwrap_or_else(|| {
+            // Only a document that was not synchronised with its model has no entry.
+            materials.push(Material::default());
+            materials.len() - 1
+        });
+        if let Some(entry) = objects.get(key.as_str()) {
+            instance.visible = !entry.hidden;
+            if let Some(name) = &entry.name {
+                instance.name = name.clone();
+            }
+        }
+    }
+}

@@ -1,0 +1,204 @@
+use std::path::Path;
+
+use serde_json::json;
+
+use super::*;
+use crate::file::testing::Folder;
+use crate::material::Reflectance;
+use crate::material::preset;
+use crate::scene::Scene;
+
+fn workbench() -> Opened {
+    open(DEFAULT_SCENE).unwrap()
+}
+
+fn gold() -> &'static Preset {
+    preset::library().iter().find(|metal| metal.id == "Au").unwrap()
+}
+
+#[test]
+fn a_document_is_read_as_it_was_written_with_fields_it_does_not_know() {
+    let folder = Folder::new();
+    let path = folder.join("a.burnish");
+    let mut document = workbench().document;
+    document.assign_preset(0, gold(), Assigned::KeepTextures);
+    document.set_value(0, "roughness", ParamValue::Number(0.3)).unwrap();
+    document.environment.source = Some(folder.join("maps/a.hdr").to_string_lossy().into_owned());
+    document.save(&path).unwrap();
+    assert_eq!(Document::read(&path).unwrap(), document);
+
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("\"maps/a.hdr\""), "paths are relative: {text}");
+    let mut json: Value = serde_json::from_str(&text).unwrap();
+    json["probes"] = json!([{ "size": 256 }]);
+    json["materials"][0]["new-field"] = json!(7);
+    std::fs::write(&path, json.to_string()).unwrap();
+    let read = Document::read(&path).unwrap();
+    read.save(&path).unwrap();
+    let again: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    assert_eq!(again, json);
+}
+
+#[test]
+fn what_is_no_document_is_refused_with_the_field_and_what_to_do() {
+    let path = Path::new("a.burnish");
+    let sound: Value = serde_json::from_str(&workbench().document.to_text(Path::new(""))).unwrap();
+    assert!(Document::from_json(sound.clone(), path).is_ok());
+    let broken = |change: fn(&mut Value)| {
+        let mut json = sound.clone();
+        change(&mut json);
+        Document::from_json(json, path).unwrap_err().to_string()
+    };
+    assert!(broken(|j| j["format"] = json!("x")).contains("format"));
+    assert!(broken(|j| j["version"] = json!(2)).contains("update Burnish"));
+    assert!(broken(|j| j["view"]["exposure_ev"] = json!("x")).contains("a.burnish"));
+    assert!(broken(|j| j["view"]["exposure_ev"] = json!(1e9)).contains("view.exposure_ev"));
+    assert!(broken(|j| j["materials"][1]["name"] = j["materials"][0]["name"].clone()).contains("two materials"));
+    assert!(broken(|j| *j = json!([])).contains("no JSON object"));
+}
+
+#[test]
+fn a_new_document_resolves_to_its_model() {
+    let opened = workbench();
+    let model = opened.sources.models[DEFAULT_SCENE].clone();
+    let resolved = resolve(&opened.document, &opened.sources, &mut Curves::default());
+    assert_eq!((resolved.missing.len(), resolved.notices.len()), (0, 0));
+    assert_eq!(resolved.scene.validate(), Ok(()));
+    assert_eq!(resolved.scene.materials.len(), model.materials.len());
+    for (instance, original) in resolved.scene.instances.iter().zip(&model.instances) {
+        let (ours, theirs) = (&resolved.scene.materials[instance.material], &model.materials[original.material]);
+        assert_eq!((ours.roughness, ours.base_color), (theirs.roughness, theirs.base_color));
+    }
+    assert!(Arc::ptr_eq(&resolved.scene.meshes[0], &model.meshes[0]), "meshes are shared, not copied");
+}
+
+#[test]
+fn edits_show_in_the_scene_and_undo_takes_them_back_byte_for_byte() {
+    let opened = workbench();
+    let before = opened.document.to_text(Path::new("/"));
+    let mut history = History::new(opened.document);
+    let keys = resolve(history.current(), &opened.sources, &mut Curves::default()).object_keys;
+    assert!(history.edit("Metal", "a", 0.0, |d| d.assign_preset(0, gold(), Assigned::ReplaceTextures)));
+    assert!(history.edit("Roughness", "a", 1.0, |d| d.set_value(0, "roughness", ParamValue::Number(0.2)).unwrap()));
+    assert!(history.edit("Hide", "", 2.0, |d| d.edit_object(&keys[0], |o| o.hidden = true)));
+    assert!(history.edit("New material", "", 3.0, |d| {
+        let index = d.duplicate_material(0).unwrap();
+        let name = d.materials[index].name.clone();
+        d.assign_material(&keys[1..2], &name);
+    }));
+    assert!(!history.edit("Nothing", "", 4.0, |_| ()));
+
+    let resolved = resolve(history.current(), &opened.sources, &mut Curves::default());
+    let gold = &resolved.scene.materials[0];
+    assert!(matches!(&gold.reflectance, Reflectance::Preset { id, .. } if id == "Au"));
+    assert_eq!(gold.roughness, 0.2);
+    assert!(gold.textures().iter().all(Option::is_none));
+    assert!(!resolved.scene.instances[0].visible);
+    assert_eq!(resolved.scene.instances[1].material, resolved.scene.materials.len() - 1);
+    assert_eq!(resolved.scene.validate(), Ok(()));
+
+    let after = history.current().to_text(Path::new("/"));
+    while history.undo().is_some() {}
+    assert_eq!(history.current().to_text(Path::new("/")), before);
+    while history.redo().is_some() {}
+    assert_eq!(history.current().to_text(Path::new("/")), after);
+}
+
+#[test]
+fn a_drag_is_one_step_and_two_drags_are_two() {
+    let mut history = History::new(workbench().document);
+    let mut drag = |at: f64| {
+        for i in 0..10 {
+            let now = at + 0.1 * f64::from(i);
+            history.edit("Roughness", "a", now, |d| {
+                d.set_value(0, "roughness", ParamValue::Number(now / 100.0)).unwrap();
+            });
+        }
+    };
+    drag(0.0);
+    drag(5.0);
+    assert_eq!(history.past().len(), 2);
+    history.seal();
+    history.edit("Roughness", "a", 5.95, |d| d.set_value(0, "roughness", ParamValue::Number(0.9)).unwrap());
+    assert_eq!(history.past().len(), 3);
+    for i in 0..100 {
+        history.edit("Move camera", "", 10.0 + 7.0 * f64::from(i), |d| d.view.camera.orbit(1.0, 0.0));
+    }
+    assert_eq!(history.past().len(), 4, "a run of camera moves is one step");
+    history.go_to(1);
+    assert_eq!((history.past().len(), history.future().count()), (1, 3));
+    history.edit("Exposure", "", 2000.0, |d| d.view.exposure_ev = 1.0);
+    assert_eq!(history.future().count(), 0, "a new edit ends the future");
+}
+
+#[test]
+fn missing_files_are_listed_and_something_stands_in_for_them() {
+    let mut document = workbench().document;
+    document.scene = "/nowhere/a.glb".into();
+    document.environment.source = Some("/nowhere/a.hdr".into());
+    document.set_texture(0, TextureRole::Normal, Some(TextureChoice::File("/nowhere/a.png".into())));
+    let opened = reload(document, &Sources::default());
+    let kinds: Vec<MissingKind> = opened.missing.iter().map(|missing| missing.kind).collect();
+    assert_eq!(kinds, [MissingKind::Model, MissingKind::Environment, MissingKind::Texture]);
+    assert!(opened.missing.iter().all(|missing| !missing.reason.is_empty()));
+    let resolved = resolve(&opened.document, &opened.sources, &mut Curves::default());
+    assert_eq!(resolved.missing.len(), 3);
+    assert_eq!(resolved.scene.validate(), Ok(()));
+    assert_eq!(resolved.scene.instances.len(), opened.document.materials.len(), "a ball for each material");
+}
+
+#[test]
+fn a_changed_model_keeps_the_edits_of_materials_by_name() {
+    let opened = workbench();
+    let model = &opened.sources.models[DEFAULT_SCENE];
+    let mut document = opened.document.clone();
+    let last = document.materials.len() - 1;
+    let name = document.materials[last].source.clone().unwrap();
+    document.assign_preset(last, gold(), Assigned::KeepTextures);
+    let mut changed = Scene::clone(model);
+    changed.materials.insert(0, crate::material::Material { name: "added".into(), ..Default::default() });
+    changed.instances.iter_mut().for_each(|instance| instance.material += 1);
+    document.sync(&changed);
+    let sources = Sources { models: BTreeMap::from([(DEFAULT_SCENE.into(), Arc::new(changed))]), ..Sources::default() };
+    let resolved = resolve(&document, &sources, &mut Curves::default());
+    let gold: Vec<&str> = (resolved.scene.materials.iter())
+        .filter(|m| matches!(m.reflectance, Reflectance::Preset { .. }))
+        .map(|m| m.name.as_str())
+        .collect();
+    assert_eq!(gold, [name.as_str()]);
+    assert!(document.materials.iter().any(|entry| entry.name == "added"));
+}
+
+#[test]
+fn a_nonsense_value_is_noticed_and_left_out() {
+    let mut document = workbench().document;
+    Arc::make_mut(&mut document.materials[0]).values.insert("roughness".into(), json!("rough"));
+    Arc::make_mut(&mut document.materials[0]).preset = Some(PresetUse { id: "Xx".into(), ..PresetUse::default() });
+    let resolved = resolve(&document, &workbench().sources, &mut Curves::default());
+    assert_eq!(resolved.notices.len(), 2);
+    assert!(resolved.notices[0].contains("roughness") && resolved.notices[1].contains("Xx"));
+}
+
+#[test]
+fn own_metals_travel_with_the_document() {
+    let mut document = workbench().document;
+    let mut own = gold().clone();
+    own.id = "My-gold".into();
+    document.assign_preset(0, &own, Assigned::KeepTextures);
+    assert_eq!(document.presets.len(), 1);
+    let resolved = resolve(&document, &workbench().sources, &mut Curves::default());
+    assert!(resolved.notices.is_empty());
+}
+
+#[test]
+fn a_material_in_use_is_not_removed() {
+    let mut document = workbench().document;
+    assert!(!document.remove_material(0), "it belongs to the model");
+    let index = document.add_material("own");
+    document.assign_material(&["x".into()], "own");
+    assert!(!document.remove_material(index));
+    document.rename_material(index, "mine");
+    assert_eq!(document.assignments[0].material, "mine");
+    document.assignments.clear();
+    assert!(document.remove_material(index));
+}

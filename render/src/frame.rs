@@ -1,0 +1,168 @@
+//! One frame of a resident scene: the targets of a size, what the shaders are told, and the passes in their order.
+
+use std::ops::Range;
+
+use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::math::sampling;
+use burnish_core::scene::{Camera, Projection};
+use glam::camera::rh::proj::directx as proj;
+use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
+
+use crate::layout::types::ViewData;
+use crate::pass::gbuffer::GBuffer;
+use crate::pass::target;
+use crate::passes::{Passes, frame_format};
+use crate::resident::Resident;
+
+/// Textures of one picture size.
+pub(crate) struct Targets {
+    pub size: UVec2,
+    gbuffer: GBuffer,
+    gbuffer_group: wgpu::BindGroup,
+    /// Scene-linear radiance of one frame.
+    pub frame: wgpu::TextureView,
+}
+
+impl Targets {
+    pub fn new(passes: &Passes, size: UVec2) -> Targets {
+        let gpu = &passes.gpu;
+        let gbuffer = GBuffer::new(gpu, size);
+        Targets {
+            size,
+            gbuffer_group: passes.classical.group(gpu, &gbuffer),
+            gbuffer,
+            frame: target(gpu, "frame", size, frame_format(gpu)).create_view(&Default::default()),
+        }
+    }
+}
+
+/// One of the frames that are averaged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Jitter {
+    /// Which.
+    pub frame: u32,
+    /// Of how many; 1 samples the centres of pixels.
+    pub frames: u32,
+}
+
+/// A frame with its view bound, ready to be encoded part by part.
+pub(crate) struct Encoding {
+    scene_group: wgpu::BindGroup,
+    viewer: Vec4,
+}
+
+impl Encoding {
+    pub fn new(
+        passes: &Passes,
+        resident: &Resident,
+        camera: &Camera,
+        size: UVec2,
+        settings: &FrameSettings,
+        jitter: Jitter,
+    ) -> Encoding {
+        let data = view_data(resident, camera, size, settings, jitter);
+        let gpu = &passes.gpu;
+        let uniform = gpu.buffer("view", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
+        let scene_group = resident.on_gpu.group(&gpu.device, &passes.scene_layout, &uniform);
+        Encoding { scene_group, viewer: data.viewer }
+    }
+
+    /// What the surfaces are.
+    pub fn surfaces(
+        &self,
+        passes: &Passes,
+        encoder: &mut wgpu::CommandEncoder,
+        resident: &Resident,
+        targets: &Targets,
+    ) {
+        passes.gbuffer.encode(encoder, &targets.gbuffer, &resident.on_gpu, &self.scene_group);
+    }
+
+    /// Lights the surfaces in some rows of the picture.
+    pub fn light(
+        &self,
+        passes: &Passes,
+        encoder: &mut wgpu::CommandEncoder,
+        resident: &Resident,
+        targets: &Targets,
+        rows: Range<u32>,
+    ) {
+        let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights];
+        passes.classical.encode(encoder, &targets.frame, groups, rows);
+    }
+
+    /// Blended surfaces over them.
+    pub fn blend(&self, passes: &Passes, encoder: &mut wgpu::CommandEncoder, resident: &Resident, targets: &Targets) {
+        let groups = [&self.scene_group, &resident.lights];
+        let depth = &targets.gbuffer.depth;
+        passes.forward.encode(encoder, &targets.frame, depth, &resident.on_gpu, groups, self.viewer);
+    }
+
+    /// All of it.
+    pub fn whole(&self, passes: &Passes, encoder: &mut wgpu::CommandEncoder, resident: &Resident, targets: &Targets) {
+        self.surfaces(passes, encoder, resident, targets);
+        self.light(passes, encoder, resident, targets, 0..targets.size.y);
+        self.blend(passes, encoder, resident, targets);
+    }
+}
+
+fn view_data(
+    resident: &Resident,
+    camera: &Camera,
+    size: UVec2,
+    settings: &FrameSettings,
+    Jitter { frame, frames }: Jitter,
+) -> ViewData {
+    let size = size.as_vec2();
+    let jitter = if frames == 1 {
+        Vec2::ZERO
+    } else {
+        sampling::hammersley(frame, frames) + Vec2::splat(0.5 / frames as f32) - 0.5
+    };
+    let clip_from_world = clip_from_world(camera, size, jitter);
+    let Resident { scene, maps, shadows, .. } = resident;
+    let (rotation, strength) = scene.environment.as_ref().map_or((0.0, 1.0), |e| (e.rotation, e.strength));
+    ViewData {
+        clip_from_world,
+        world_from_clip: clip_from_world.inverse(),
+        viewer: viewer(camera),
+        environment_cos: rotation.cos(),
+        environment_sin: rotation.sin(),
+        environment_scale: maps.scale * strength,
+        environment_mips: maps.radiance.mip_level_count() as f32,
+        size,
+        light_count: shadows.light_count,
+        samples: settings.samples,
+        masking: settings.masking as u32,
+        multiple_scattering: u32::from(settings.multiple_scattering),
+        frame,
+        prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
+        source_count: maps.source_count,
+        wide_alpha: maps.wide_alpha,
+        pad0: 0,
+        pad1: 0,
+    }
+}
+
+/// Reversed depth: 1 at the near plane; 0 infinitely far away, or at the far plane of an orthographic camera.
+/// `jitter` moves the picture by a part of a pixel.
+pub fn clip_from_world(camera: &Camera, size: Vec2, jitter: Vec2) -> Mat4 {
+    let aspect = size.x / size.y;
+    let clip_from_view = match camera.projection {
+        Projection::Perspective { yfov, near } => proj::perspective_infinite_reverse(yfov, aspect, near),
+        // Far and near are exchanged: depth is reversed.
+        Projection::Orthographic { ymag, near, far } => {
+            proj::orthographic(-ymag * aspect, ymag * aspect, -ymag, ymag, far, near)
+        }
+    };
+    let moved = Mat4::from_translation(Vec3::new(2.0 * jitter.x / size.x, -2.0 * jitter.y / size.y, 0.0));
+    moved * clip_from_view * Mat4::from(camera.world_from_view.inverse())
+}
+
+/// The viewer as a homogeneous point: a direction when orthographic.
+fn viewer(camera: &Camera) -> Vec4 {
+    match camera.projection {
+        Projection::Perspective { .. } => Vec3::from(camera.world_from_view.translation).extend(1.0),
+        Projection::Orthographic { .. } => camera.world_from_view.transform_vector3(Vec3::Z).extend(0.0),
+    }
+}

@@ -1,0 +1,65 @@
+//! The display transform: exposure, tone map and sRGB encoding into 8 bits.
+
+use burnish_core::color::tone::{ToneMap, exposure_factor};
+
+use crate::device::Gpu;
+use crate::layout::types::DisplayData;
+use crate::pass::{buffer_entry, cleared, fullscreen_pipeline, texture_entry};
+use crate::shader;
+
+/// Plain bytes that hold the encoded values; nothing may decode or encode them once more.
+pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The pipeline.
+pub struct DisplayPass {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl DisplayPass {
+    /// Compiles the pipeline.
+    pub fn new(gpu: &Gpu) -> DisplayPass {
+        let device = &gpu.device;
+        let float = wgpu::TextureSampleType::Float { filterable: false };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("display"),
+            entries: &[
+                buffer_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::BufferBindingType::Uniform),
+                texture_entry(1, float, wgpu::TextureViewDimension::D2),
+            ],
+        });
+        let module = shader::DISPLAY.module(device);
+        let pipeline = fullscreen_pipeline(device, "display", &[Some(&layout)], &module, FORMAT, &[]);
+        DisplayPass { layout, pipeline }
+    }
+
+    /// Shows the mean of `frames` frames that `sum` adds up.
+    pub fn encode(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        (sum, frames): (&wgpu::TextureView, u32),
+        output: &wgpu::TextureView,
+        (tone, exposure_ev): (ToneMap, f32),
+    ) {
+        let factor = exposure_factor(exposure_ev) / frames.max(1) as f32;
+        let data = DisplayData { factor, tone: tone.number(), pad0: 0, pad1: 0 };
+        let uniform = gpu.buffer("display", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("display"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(sum) },
+            ],
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("display"),
+            color_attachments: &[cleared(output)],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,67 @@
+//! The compiled pipelines of all passes, independent of any scene and shared by everything that draws on a device.
+
+use crate::device::Gpu;
+use crate::pass::accumulate::AccumulatePass;
+use crate::pass::classical::{ClassicalPass, light_layout};
+use crate::pass::display::DisplayPass;
+use crate::pass::environment::EnvironmentPass;
+use crate::pass::forward::ForwardPass;
+use crate::pass::gbuffer::GBufferPass;
+use crate::pass::scene_layout;
+use crate::pass::shadow::ShadowPass;
+use crate::scene::material_layout;
+
+/// A device and every pipeline on it. Compiling takes long; share it in an `Arc`.
+pub struct Passes {
+    pub(crate) gpu: Gpu,
+    pub(crate) scene_layout: wgpu::BindGroupLayout,
+    pub(crate) material_layout: wgpu::BindGroupLayout,
+    pub(crate) light_layout: wgpu::BindGroupLayout,
+    pub(crate) environment: EnvironmentPass,
+    pub(crate) shadow: ShadowPass,
+    pub(crate) gbuffer: GBufferPass,
+    pub(crate) classical: ClassicalPass,
+    pub(crate) forward: ForwardPass,
+    pub(crate) accumulate: AccumulatePass,
+    pub(crate) display: DisplayPass,
+}
+
+impl Passes {
+    /// Compiles the pipelines.
+    pub fn new(gpu: &Gpu) -> Passes {
+        let device = &gpu.device;
+        let material_layout = material_layout(device);
+        let scene_layout = scene_layout(device);
+        let light_layout = light_layout(device);
+        let mesh = [Some(&scene_layout), Some(&material_layout)];
+        let lit = [Some(&scene_layout), Some(&material_layout), Some(&light_layout)];
+        let format = frame_format(gpu);
+        Passes {
+            gpu: gpu.clone(),
+            environment: EnvironmentPass::new(gpu),
+            shadow: ShadowPass::new(gpu, &mesh),
+            gbuffer: GBufferPass::new(gpu, &mesh),
+            classical: ClassicalPass::new(gpu, &scene_layout, &light_layout, format),
+            forward: ForwardPass::new(gpu, &lit, format),
+            accumulate: AccumulatePass::new(gpu),
+            display: DisplayPass::new(gpu),
+            scene_layout,
+            material_layout,
+            light_layout,
+        }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}
+
+/// Full floats where they can be blended: a sun in the background is beyond the range of halves.
+pub(crate) fn frame_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    if gpu.has(wgpu::Features::FLOAT32_BLENDABLE) {
+        wgpu::TextureFormat::Rgba32Float
+    } else {
+        wgpu::TextureFormat::Rgba16Float
+    }
+}

@@ -1,0 +1,149 @@
+//! A scene on the device with all that is made from it: tables, environment cubes, shadow maps.
+//!
+//! A [`Resident`] never changes. A changed scene becomes a new one that shares with the old whatever is still right, so
+//! that a failure on the way leaves the old one whole.
+
+use std::sync::Arc;
+
+use burnish_core::scene::{Bounds, Environment, Scene};
+use burnish_core::surface::ggx::Masking;
+use glam::Vec3;
+
+use crate::error::RenderError;
+use crate::pass::classical::light_group;
+use crate::pass::environment::EnvironmentMaps;
+use crate::pass::shadow::Shadows;
+use crate::passes::Passes;
+use crate::scene::{GpuScene, MaterialGroups};
+use crate::tables::{TableCache, Tables};
+
+/// Bytes of cubes that are kept beside those in use.
+const SPARE_ENVIRONMENT_BYTES: u64 = 512 << 20;
+
+/// Makes residents and keeps what the next may need again.
+pub(crate) struct Loader {
+    pub passes: Arc<Passes>,
+    materials: MaterialGroups,
+    tables: TableCache,
+    environments: EnvironmentCache,
+}
+
+/// A scene ready to be drawn.
+pub(crate) struct Resident {
+    pub scene: Arc<Scene>,
+    pub masking: Masking,
+    pub on_gpu: GpuScene,
+    pub maps: Arc<EnvironmentMaps>,
+    pub shadows: Shadows,
+    /// Bind group 2 of what lights surfaces.
+    pub lights: wgpu::BindGroup,
+    bounds: Bounds,
+    tables: Arc<TableBuffer>,
+}
+
+struct TableBuffer {
+    floats: Vec<f32>,
+    buffer: wgpu::Buffer,
+}
+
+impl Loader {
+    pub fn new(passes: &Arc<Passes>) -> Loader {
+        Loader {
+            passes: passes.clone(),
+            materials: MaterialGroups::new(&passes.gpu, &passes.material_layout),
+            tables: TableCache::default(),
+            environments: EnvironmentCache::default(),
+        }
+    }
+
+    /// The valid scene with metals tabulated for `masking`; takes over from `before` what did not change.
+    pub fn load(
+        &mut self,
+        scene: &Arc<Scene>,
+        masking: Masking,
+        before: Option<&Resident>,
+    ) -> Result<Resident, RenderError> {
+        let environment = scene.environment.as_ref().ok_or(RenderError::NoEnvironment)?;
+        let passes = self.passes.clone();
+        let gpu = &passes.gpu;
+        let tables = Tables::new(&mut self.tables, scene, masking);
+        let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, before.map(|b| &b.on_gpu))?;
+        let maps = self.environments.get(&passes, environment)?;
+        let bounds = match before {
+            Some(before) if same_places(&before.scene, scene) => before.bounds,
+            _ => scene.bounds(),
+        };
+        let shadows = passes.shadow.build(
+            gpu,
+            scene,
+            bounds,
+            &on_gpu,
+            &passes.scene_layout,
+            before.map(|before| &before.shadows),
+        );
+        let tables = match before {
+            Some(before) if before.tables.floats == tables.floats => before.tables.clone(),
+            _ => Arc::new(TableBuffer {
+                buffer: gpu.buffer("tables", bytemuck::cast_slice(&tables.floats), wgpu::BufferUsages::STORAGE),
+                floats: tables.floats,
+            }),
+        };
+        let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, &tables.buffer);
+        gpu.check()?;
+        Ok(Resident { scene: scene.clone(), masking, on_gpu, maps, shadows, lights, bounds, tables })
+    }
+}
+
+/// True when every instance is where it was: the bounds stay.
+fn same_places(a: &Scene, b: &Scene) -> bool {
+    let same_meshes =
+        a.meshes.len() == b.meshes.len() && a.meshes.iter().zip(&b.meshes).all(|(a, b)| Arc::ptr_eq(a, b));
+    same_meshes
+        && a.instances.len() == b.instances.len()
+        && a.instances
+            .iter()
+            .zip(&b.instances)
+            .all(|(a, b)| (a.mesh, a.world_from_local) == (b.mesh, b.world_from_local))
+}
+
+/// Prepared environments, the last used first. Turned and scaled copies of one map share its cubes.
+#[derive(Default)]
+struct EnvironmentCache {
+    known: Vec<(Arc<[Vec3]>, u32, Arc<EnvironmentMaps>)>,
+}
+
+impl EnvironmentCache {
+    fn get(&mut self, passes: &Passes, environment: &Environment) -> Result<Arc<EnvironmentMaps>, RenderError> {
+        let Environment { texels, width, .. } = environment;
+        let place = self.known.iter().position(|(known, of, _)| Arc::ptr_eq(known, texels) && of == width);
+        let entry = match place {
+            Some(place) => self.known.remove(place),
+            None => {
+                let maps = passes.environment.build(&passes.gpu, environment)?;
+                (texels.clone(), *width, Arc::new(maps))
+            }
+        };
+        let maps = entry.2.clone();
+        self.known.insert(0, entry);
+        let mut spare = 0;
+        let kept = self.known.iter().skip(1).take_while(|(_, _, maps)| {
+            spare += bytes(maps);
+            spare <= SPARE_ENVIRONMENT_BYTES
+        });
+        let kept = 1 + kept.count();
+        self.known.truncate(kept);
+        Ok(maps)
+    }
+}
+
+/// Bytes of the cubes on the device.
+fn bytes(maps: &EnvironmentMaps) -> u64 {
+    let cube = |texture: &wgpu::Texture| {
+        let texel = u64::from(texture.format().block_copy_size(None).unwrap_or(8));
+        let face = u64::from(texture.width()).pow(2);
+        // All mips together are a third of the largest.
+        let levels = if texture.mip_level_count() > 1 { face + face / 3 } else { face };
+        6 * texel * levels
+    };
+    [&maps.radiance, &maps.prefiltered, &maps.dimmed, &maps.irradiance].into_iter().map(cube).sum()
+}

@@ -1,0 +1,338 @@
+//! A scene on a screen, kept up to date: quick frames while something changes, a sharp picture when it rests.
+
+mod pace;
+mod still;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::param::Settings;
+use burnish_core::scene::{Camera, Projection, Scene};
+use burnish_core::surface::ggx::Masking;
+use glam::{Affine3A, UVec2, Vec2, Vec3};
+
+use crate::device::Gpu;
+use crate::error::RenderError;
+use crate::frame::{Encoding, Jitter, Targets};
+use crate::pass::{display, target};
+use crate::passes::Passes;
+use crate::readback::read_texel;
+use crate::renderer::check_size;
+use crate::resident::{Loader, Resident};
+use pace::Pace;
+use still::Still;
+
+pub use burnish_core::scene::Picked;
+
+/// What to show.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Physical pixels of the panel.
+    pub size: UVec2,
+    /// From where.
+    pub camera: Camera,
+    /// Settings of the `classical` method.
+    pub settings: Settings,
+    /// Display transform.
+    pub tone: ToneMap,
+    /// Exposure in stops.
+    pub exposure_ev: f32,
+    /// Something is being dragged: quick frames only.
+    pub moving: bool,
+}
+
+/// What was shown.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// Pixels that were drawn, at most the panel's; zero before there is a scene.
+    pub size: UVec2,
+    /// Whole frames in the picture: 1 for a quick one.
+    pub frames: u32,
+    /// Nothing is left to refine: no need to draw until something changes.
+    pub settled: bool,
+    /// How much of a finer environment is prepared, 0 to 1, while one is.
+    pub preparing: Option<f32>,
+    /// Time of this call, including the device's where it is a software one.
+    pub milliseconds: f64,
+    /// What the person should know about the picture.
+    pub notices: Vec<String>,
+}
+
+/// Targets with the picture that a screen shows.
+struct Canvas {
+    targets: Targets,
+    output: wgpu::TextureView,
+}
+
+/// Which picture the screen shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shown {
+    Nothing,
+    /// The last quick frame, of the quick canvas or, where it has the panel's size, of the still one.
+    Quick {
+        full: bool,
+    },
+    /// The sums.
+    Still,
+}
+
+/// What a picture depends on besides the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    size: UVec2,
+    world_from_view: Affine3A,
+    projection: Projection,
+    settings: FrameSettings,
+}
+
+/// A scene on a screen.
+///
+/// Every change is shown by the next [`Viewport::draw`]. On a software rasteriser that frame has fewer pixels; the calls
+/// after it sharpen the picture, each in a short time, until it is [`Drawn::settled`].
+pub struct Viewport {
+    loader: Loader,
+    resident: Option<Resident>,
+    pace: Pace,
+    quick: Option<Canvas>,
+    full: Option<(Canvas, Still)>,
+    shown: Shown,
+    /// The scene changed since the last frame.
+    stale: bool,
+    last: Option<(Key, Camera)>,
+    display: Option<(ToneMap, f32)>,
+}
+
+impl Viewport {
+    /// Compiles the passes.
+    pub fn new(gpu: &Gpu) -> Viewport {
+        Viewport::with_passes(&Arc::new(Passes::new(gpu)))
+    }
+
+    /// A viewport with passes that are compiled already.
+    pub fn with_passes(passes: &Arc<Passes>) -> Viewport {
+        Viewport {
+            loader: Loader::new(passes),
+            resident: None,
+            pace: Pace::new(passes.gpu.is_software()),
+            quick: None,
+            full: None,
+            shown: Shown::Nothing,
+            stale: false,
+            last: None,
+            display: None,
+        }
+    }
+
+    /// The compiled passes, for other renderers on the same device.
+    pub fn passes(&self) -> &Arc<Passes> {
+        &self.loader.passes
+    }
+
+    /// Goes over to another valid scene; only what differs is made anew. On an error the old one stays.
+    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
+        let masking = self.resident.as_ref().map_or(Masking::Correlated, |resident| resident.masking);
+        self.load(scene, masking)
+    }
+
+    fn load(&mut self, scene: &Arc<Scene>, masking: Masking) -> Result<(), RenderError> {
+        if self.resident.as_ref().is_some_and(|old| Arc::ptr_eq(&old.scene, scene) && old.masking == masking) {
+            return Ok(());
+        }
+        self.resident = Some(self.loader.load(scene, masking, self.resident.as_ref())?);
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Draws what is due: a quick frame after a change, else a part of the sharp picture.
+    pub fn draw(&mut self, frame: &Frame) -> Result<Drawn, RenderError> {
+        let start = Instant::now();
+        let passes = self.loader.passes.clone();
+        let gpu = &passes.gpu;
+        gpu.check()?;
+        check_size(gpu, frame.size)?;
+        let settings = FrameSettings::new(&frame.settings);
+        let Some(resident) = &self.resident else {
+            return Ok(Drawn { settled: true, ..Drawn::default() });
+        };
+        if resident.masking != settings.masking {
+            let scene = resident.scene.clone();
+            self.load(&scene, settings.masking)?;
+        }
+        let key = Key {
+            size: frame.size,
+            world_from_view: frame.camera.world_from_view,
+            projection: frame.camera.projection,
+            settings,
+        };
+        let before = (self.shown, self.frames());
+        let changed = self.stale || self.last.as_ref().is_none_or(|(last, _)| *last != key);
+        if changed {
+            self.draw_quick(&passes, frame, &settings)?;
+            self.last = Some((key, frame.camera.clone()));
+            self.stale = false;
+        } else if !frame.moving {
+            self.refine(&passes, &frame.camera, &settings)?;
+        }
+        let display = (frame.tone, frame.exposure_ev);
+        if changed || before != (self.shown, self.frames()) || self.display != Some(display) {
+            self.show(&passes, display);
+            self.display = Some(display);
+        }
+        gpu.check()?;
+        Ok(self.drawn(frame, start))
+    }
+
+    fn drawn(&self, frame: &Frame, start: Instant) -> Drawn {
+        let settled = !frame.moving && self.full.as_ref().is_some_and(|(_, still)| still.settled());
+        let unshadowed = self.resident.iter().flat_map(|resident| &resident.shadows.unshadowed);
+        Drawn {
+            size: self.canvas().map_or(UVec2::ZERO, |canvas| canvas.targets.size),
+            frames: self.frames(),
+            settled,
+            preparing: None,
+            milliseconds: start.elapsed().as_secs_f64() * 1e3,
+            notices: unshadowed
+                .map(|name| format!("light `{name}` casts no shadow: the shadow maps are full"))
+                .collect(),
+        }
+    }
+
+    /// Whole frames in the picture.
+    fn frames(&self) -> u32 {
+        match self.shown {
+            Shown::Nothing => 0,
+            Shown::Quick { .. } => 1,
+            Shown::Still => self.full.as_ref().map_or(0, |(_, still)| still.frames),
+        }
+    }
+
+    fn canvas(&self) -> Option<&Canvas> {
+        match self.shown {
+            Shown::Nothing => None,
+            Shown::Quick { full: false } => self.quick.as_ref(),
+            Shown::Quick { full: true } | Shown::Still => self.full.as_ref().map(|(canvas, _)| canvas),
+        }
+    }
+
+    /// One frame as large as there is time for.
+    fn draw_quick(&mut self, passes: &Passes, frame: &Frame, settings: &FrameSettings) -> Result<(), RenderError> {
+        let Some(resident) = &self.resident else { return Ok(()) };
+        if self.full.as_ref().is_some_and(|(canvas, _)| canvas.targets.size != frame.size) {
+            self.full = None;
+        }
+        let size = self.pace.moving_size(frame.size);
+        let full = size == frame.size;
+        let canvas = if full {
+            &self.full.get_or_insert_with(|| full_canvas(passes, size)).0
+        } else {
+            if self.quick.as_ref().is_some_and(|canvas| canvas.targets.size != size) {
+                self.quick = None;
+            }
+            self.quick.get_or_insert_with(|| Canvas::new(passes, size))
+        };
+        let settings = FrameSettings { samples: self.pace.moving_samples(settings.samples), ..*settings };
+        let jitter = Jitter { frame: 0, frames: 1 };
+        let encoding = Encoding::new(passes, resident, &frame.camera, size, &settings, jitter);
+        let targets = &canvas.targets;
+        let surfaces = timed(&passes.gpu, |encoder| encoding.surfaces(passes, encoder, resident, targets))?;
+        let rest = timed(&passes.gpu, |encoder| {
+            encoding.light(passes, encoder, resident, targets, 0..size.y);
+            encoding.blend(passes, encoder, resident, targets);
+        })?;
+        self.pace.note_moving(frame.size, surfaces, rest);
+        self.shown = Shown::Quick { full };
+        if let Some((_, still)) = &mut self.full {
+            still.restart();
+        }
+        Ok(())
+    }
+
+    /// A part of the sharp picture.
+    fn refine(&mut self, passes: &Passes, camera: &Camera, settings: &FrameSettings) -> Result<(), RenderError> {
+        let (Some(resident), Some((key, _))) = (&self.resident, &self.last) else { return Ok(()) };
+        let (canvas, still) = self.full.get_or_insert_with(|| full_canvas(passes, key.size));
+        if still.settled() {
+            return Ok(());
+        }
+        still.advance(passes, resident, canvas, (camera, settings), &mut self.pace)?;
+        if still.frames > 0 {
+            self.shown = Shown::Still;
+        }
+        Ok(())
+    }
+
+    /// Puts the picture through the display transform.
+    fn show(&self, passes: &Passes, display: (ToneMap, f32)) {
+        let Some(canvas) = self.canvas() else { return };
+        let mut encoder = passes.gpu.device.create_command_encoder(&Default::default());
+        let (sum, frames) = match (self.shown, &self.full) {
+            (Shown::Still, Some((_, still))) => (&still.sums.texture().create_view(&Default::default()), still.frames),
+            _ => (&canvas.targets.frame, 1),
+        };
+        passes.display.encode(&passes.gpu, &mut encoder, (sum, frames), &canvas.output, display);
+        passes.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// The picture: sRGB-encoded bytes, to be shown as they are. It is another texture when [`Drawn::size`] changes.
+    pub fn output(&self) -> Option<&wgpu::TextureView> {
+        self.canvas().map(|canvas| &canvas.output)
+    }
+
+    /// The visible surface under a point of the picture, 0 to 1 from its top left. Holes of masked materials count as
+    /// surface.
+    pub fn pick(&mut self, at: Vec2) -> Result<Option<Picked>, RenderError> {
+        self.passes().gpu.check()?;
+        let (Some(resident), Some((key, camera))) = (&self.resident, &self.last) else { return Ok(None) };
+        let size = key.size.as_vec2();
+        Ok(resident.scene.pick(camera.ray(at, size.x / size.y)))
+    }
+
+    /// Scene-linear radiance of the picture under a point, 0 to 1 from its top left: the mean of its frames.
+    pub fn radiance(&mut self, at: Vec2) -> Result<Option<Vec3>, RenderError> {
+        let gpu = &self.loader.passes.gpu;
+        gpu.check()?;
+        let Some(canvas) = self.canvas() else { return Ok(None) };
+        if !(at.cmpge(Vec2::ZERO) & at.cmple(Vec2::ONE)).all() {
+            return Ok(None);
+        }
+        let size = canvas.targets.size;
+        let pixel = (at * size.as_vec2()).as_uvec2().min(size - 1);
+        let texel = match (self.shown, &self.full) {
+            (Shown::Still, Some((_, still))) => {
+                read_texel(gpu, still.sums.texture(), pixel)? / still.frames.max(1) as f32
+            }
+            _ => read_texel(gpu, canvas.targets.frame.texture(), pixel)?,
+        };
+        Ok(Some(texel.truncate()))
+    }
+}
+
+fn full_canvas(passes: &Passes, size: UVec2) -> (Canvas, Still) {
+    let canvas = Canvas::new(passes, size);
+    let still = Still::new(passes, &canvas);
+    (canvas, still)
+}
+
+impl Canvas {
+    fn new(passes: &Passes, size: UVec2) -> Canvas {
+        let output = target(&passes.gpu, "viewport", size, display::FORMAT);
+        Canvas { targets: Targets::new(passes, size), output: output.create_view(&Default::default()) }
+    }
+}
+
+/// Submits what `encode` records. On a software rasteriser, which shares the processor with the window anyway, waits for
+/// it and returns its milliseconds; else 0.
+fn timed(gpu: &Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<f64, RenderError> {
+    let start = Instant::now();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encode(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    if gpu.is_software() {
+        gpu.wait()?;
+        return Ok(start.elapsed().as_secs_f64() * 1e3);
+    }
+    gpu.check()?;
+    Ok(0.0)
+}

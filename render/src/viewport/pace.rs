@@ -1,0 +1,98 @@
+//! How much is drawn at a time, so that a software rasteriser keeps up with a hand: measured, then predicted.
+
+use glam::UVec2;
+
+/// Milliseconds of a frame while something moves. The window itself takes about 25 of the 125 of 8 frames a second.
+const MOVING_MS: f64 = 70.0;
+/// Milliseconds of refinement between two looks at the input.
+const STILL_MS: f64 = 90.0;
+/// Shares of the window's width and height that may be drawn.
+const SCALES: [f32; 8] = [1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 0.32, 0.25];
+/// Fewest rows that are lit at a time.
+const ROWS_MIN: u32 = 16;
+/// Weight of a new measurement: one hiccup of the machine does not count in full.
+const WEIGHT: f64 = 0.5;
+
+/// Costs seen so far.
+#[derive(Debug)]
+pub(crate) struct Pace {
+    software: bool,
+    scale: usize,
+    /// Milliseconds of the surfaces of a frame: mostly vertices, whatever the resolution.
+    surfaces: Option<f64>,
+    /// Milliseconds a pixel of what follows while moving, and when still.
+    moving_pixel: Option<f64>,
+    still_pixel: Option<f64>,
+}
+
+impl Pace {
+    pub fn new(software: bool) -> Pace {
+        Pace { software, scale: 4, surfaces: None, moving_pixel: None, still_pixel: None }
+    }
+
+    /// Pixels to draw while something moves in a window of so many.
+    pub fn moving_size(&self, window: UVec2) -> UVec2 {
+        if self.software { scaled(window, SCALES[self.scale]) } else { window }
+    }
+
+    /// Samples of a lobe while something moves.
+    pub fn moving_samples(&self, samples: u32) -> u32 {
+        if self.software { samples.min(MOVING_SAMPLES) } else { samples }
+    }
+
+    /// Learns from a moving frame: milliseconds of its surfaces and of the rest.
+    pub fn note_moving(&mut self, window: UVec2, surfaces: f64, rest: f64) {
+        let size = self.moving_size(window);
+        learn(&mut self.surfaces, surfaces);
+        learn(&mut self.moving_pixel, rest / pixels(size));
+        let (Some(surfaces), Some(pixel)) = (self.surfaces, self.moving_pixel) else { return };
+        let expected = |scale: usize| surfaces + pixel * pixels(scaled(window, SCALES[scale]));
+        if expected(self.scale) > MOVING_MS {
+            self.scale = (self.scale..SCALES.len() - 1).find(|s| expected(*s) <= MOVING_MS).unwrap_or(SCALES.len() - 1);
+        } else if self.scale > 0 && expected(self.scale - 1) < 0.85 * MOVING_MS {
+            // One step at a time, and with room to spare: a resolution that flickers is worse than a low one.
+            self.scale -= 1;
+        }
+    }
+
+    /// Rows to light next after so many milliseconds; 0 when the time is up.
+    pub fn rows(&self, spent: f64, size: UVec2, left: u32) -> u32 {
+        if !self.software {
+            return left;
+        }
+        let row = f64::from(size.x) * self.still_pixel.unwrap_or(1e-3);
+        let rows = ((STILL_MS - spent) / row.max(1e-6)).clamp(0.0, 1e6) as u32;
+        if rows >= ROWS_MIN || left <= rows {
+            rows.min(left)
+        } else if spent == 0.0 {
+            ROWS_MIN.min(left)
+        } else {
+            0
+        }
+    }
+
+    /// Learns from the surfaces of a still frame.
+    pub fn note_surfaces(&mut self, ms: f64) {
+        learn(&mut self.surfaces, ms);
+    }
+
+    /// Learns from rows that were lit.
+    pub fn note_rows(&mut self, size: UVec2, rows: u32, ms: f64) {
+        learn(&mut self.still_pixel, ms / pixels(UVec2::new(size.x, rows)));
+    }
+}
+
+/// Samples of a lobe that a software rasteriser can afford while something moves.
+const MOVING_SAMPLES: u32 = 4;
+
+fn scaled(window: UVec2, scale: f32) -> UVec2 {
+    (window.as_vec2() * scale).round().as_uvec2().max(UVec2::ONE)
+}
+
+fn pixels(size: UVec2) -> f64 {
+    f64::from(size.x.max(1)) * f64::from(size.y.max(1))
+}
+
+fn learn(known: &mut Option<f64>, seen: f64) {
+    *known = Some(known.map_or(seen, |known| known + WEIGHT * (seen - known)));
+}

@@ -1,0 +1,110 @@
+//! The picture of a scene at rest: jittered frames at full resolution, summed a part at a time.
+
+use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::scene::Camera;
+
+use super::Canvas;
+use super::pace::Pace;
+use crate::error::RenderError;
+use crate::frame::{Encoding, Jitter};
+use crate::pass::accumulate::Sums;
+use crate::passes::Passes;
+use crate::resident::Resident;
+
+/// Frames that are averaged. The picture is settled after them.
+pub(crate) const FRAMES: u32 = 16;
+
+/// Sums and how far they are.
+pub(crate) struct Still {
+    pub sums: Sums,
+    /// Whole frames in the sums.
+    pub frames: u32,
+    current: Option<Current>,
+}
+
+/// The frame that is being drawn.
+struct Current {
+    encoding: Encoding,
+    /// Rows that are lit.
+    rows: u32,
+}
+
+/// The frame that is drawn as the `n`th: any few at the start are spread over the pixel, the first near its middle.
+fn order(n: u32) -> u32 {
+    const { assert!(FRAMES == 16) };
+    (n.reverse_bits() >> 28) ^ 9
+}
+
+impl Still {
+    pub fn new(passes: &Passes, canvas: &Canvas) -> Still {
+        Still { sums: Sums::new(&passes.gpu, canvas.targets.size), frames: 0, current: None }
+    }
+
+    /// Starts anew.
+    pub fn restart(&mut self) {
+        self.frames = 0;
+        self.current = None;
+    }
+
+    pub fn settled(&self) -> bool {
+        self.frames >= FRAMES
+    }
+
+    /// Draws on until a frame is whole or the time is up.
+    pub fn advance(
+        &mut self,
+        passes: &Passes,
+        resident: &Resident,
+        canvas: &Canvas,
+        (camera, settings): (&Camera, &FrameSettings),
+        pace: &mut Pace,
+    ) -> Result<(), RenderError> {
+        let (gpu, targets) = (&passes.gpu, &canvas.targets);
+        let mut spent = 0.0;
+        let Current { encoding, rows } = match &mut self.current {
+            Some(current) => current,
+            None => {
+                let jitter = Jitter { frame: order(self.frames), frames: FRAMES };
+                let encoding = Encoding::new(passes, resident, camera, targets.size, settings, jitter);
+                let ms = super::timed(gpu, |encoder| encoding.surfaces(passes, encoder, resident, targets))?;
+                pace.note_surfaces(ms);
+                spent += ms;
+                self.current.insert(Current { encoding, rows: 0 })
+            }
+        };
+        while *rows < targets.size.y {
+            let next = pace.rows(spent, targets.size, targets.size.y - *rows);
+            if next == 0 {
+                return Ok(());
+            }
+            let ms = super::timed(gpu, |encoder| {
+                encoding.light(passes, encoder, resident, targets, *rows..*rows + next);
+            })?;
+            pace.note_rows(targets.size, next, ms);
+            spent += ms;
+            *rows += next;
+        }
+        super::timed(gpu, |encoder| {
+            encoding.blend(passes, encoder, resident, targets);
+            if self.frames == 0 {
+                self.sums.clear(encoder);
+            }
+            passes.accumulate.encode(gpu, encoder, &targets.frame, &mut self.sums);
+        })?;
+        self.frames += 1;
+        self.current = None;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_frame_is_drawn_once() {
+        let mut drawn: Vec<_> = (0..FRAMES).map(order).collect();
+        drawn.sort_unstable();
+        assert_eq!(drawn, (0..FRAMES).collect::<Vec<_>>());
+    }
+}

@@ -5,6 +5,8 @@
 
 #[path = "images/environment.rs"]
 mod environment;
+#[path = "images/viewport.rs"]
+mod viewport;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -36,6 +38,7 @@ fn main() {
     trials.push(trial("a lost device is an error from then on", &[Need::Gpu], lost_device));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
     trials.extend(environment::trials());
+    trials.extend(viewport::trials());
     libtest_mimic::run(&arguments, trials).exit();
 }
 

@@ -69,6 +69,16 @@ impl Workbench {
         &mut self.session
     }
 
+    /// The source of the picture.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// The source of the picture, for trials of its faults.
+    pub fn stage_mut(&mut self) -> &mut Stage {
+        &mut self.stage
+    }
+
     /// Draws everything and then does what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.session.now_secs = ui.input(|input| input.time);

@@ -5,6 +5,7 @@
 mod coarse;
 mod plan;
 mod refine;
+mod resources;
 mod steps;
 
 use burnish_core::scene::Environment;

@@ -1,20 +1,16 @@
 //! The device's part of building the cubes: a list of tasks that is worked off in slices of any size.
 
-use burnish_core::lighting::classical::{self, Source};
-use bytemuck::Zeroable;
+use burnish_core::lighting::classical;
 
 use super::plan::{Dimmed, Patch, Plan, padded};
-use super::{EnvironmentMaps, EnvironmentPass, FORMAT, TILE, cube_view};
+use super::resources::{cube, face_of, level_view, map_texture, source_buffer, tile_count};
+use super::{EnvironmentMaps, EnvironmentPass, TILE, cube_view};
 use crate::device::Gpu;
 use crate::error::RenderError;
-use crate::layout::types::{EnvironmentStep, SourceData};
+use crate::layout::types::EnvironmentStep;
 
 /// Edge of a face of the irradiance cube.
 const IRRADIANCE_FACE: u32 = 16;
-/// Rows of the map in a layer of its texture, which is uploaded as a whole; more where the map has very many.
-const LAYER_ROWS: u32 = 32;
-/// Layers that every adapter allows.
-const LAYERS_MAX: u32 = 256;
 /// Workgroups that every adapter takes at once.
 const GROUPS_MAX: u32 = 65_535;
 
@@ -418,83 +414,4 @@ impl Steps {
         pass_encoder.set_bind_group(0, &group, &[]);
         pass_encoder.dispatch_workgroups(units.len() as u32, 1, 1);
     }
-}
-
-fn tile_count((texture, level): &(wgpu::Texture, u32)) -> u32 {
-    6 * (texture.width() >> level).div_ceil(TILE).max(1).pow(2)
-}
-
-fn face_of((texture, level): &(wgpu::Texture, u32), face: u32) -> wgpu::TexelCopyTextureInfo<'_> {
-    wgpu::TexelCopyTextureInfo {
-        mip_level: *level,
-        origin: wgpu::Origin3d { x: 0, y: 0, z: face },
-        ..texture.as_image_copy()
-    }
-}
-
-fn level_view(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        base_mip_level: level,
-        mip_level_count: Some(1),
-        ..Default::default()
-    })
-}
-
-fn cube(gpu: &Gpu, label: &str, face: u32, levels: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: face, height: face, depth_or_array_layers: 6 },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: FORMAT,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::STORAGE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
-}
-
-/// The sources for the shader; never empty.
-fn source_buffer(gpu: &Gpu, sources: &[Source], scale: f32) -> wgpu::Buffer {
-    let mut data: Vec<SourceData> = sources
-        .iter()
-        .map(|s| SourceData { direction: s.direction, pad0: 0, power: s.power / scale, pad1: 0 })
-        .collect();
-    data.resize(data.len().max(1), SourceData::zeroed());
-    gpu.buffer(
-        "bright sources",
-        bytemuck::cast_slice(&data),
-        wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-    )
-}
-
-/// Room for the map as floats, in layers of rows: a layer is written at once, a large texture would first be cleared.
-fn map_texture(gpu: &Gpu, plan: &Plan) -> Result<wgpu::Texture, RenderError> {
-    let environment = &plan.environment;
-    let allowed = gpu.device.limits().max_texture_dimension_2d;
-    if environment.width.max(environment.height) > allowed {
-        return Err(RenderError::TooLarge {
-            what: format!("environment `{}`, pixels across", environment.name),
-            bytes: u64::from(environment.width.max(environment.height)),
-            allowed: u64::from(allowed),
-        });
-    }
-    let rows = LAYER_ROWS.max(environment.height.div_ceil(LAYERS_MAX));
-    Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("equirectangular"),
-        size: wgpu::Extent3d {
-            width: environment.width,
-            height: rows,
-            depth_or_array_layers: environment.height.div_ceil(rows),
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    }))
 }

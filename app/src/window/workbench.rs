@@ -84,6 +84,17 @@ impl Workbench {
         &mut self.session
     }
 
+    /// A file is being read or written by another thread.
+    pub fn is_busy(&self) -> bool {
+        false
+    }
+
+    /// Goes over to another session, away from the start page.
+    pub fn set_session(&mut self, session: Session) {
+        self.session = session;
+        self.start = None;
+    }
+
     /// The user's choices.
     pub fn preferences(&self) -> &Preferences {
         &self.preferences
@@ -125,7 +136,8 @@ impl Workbench {
         let mut context = Context { session, preferences, stage, requests };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         let middle = ui.available_rect_before_wrap();
-        egui::CentralPanel::no_frame().show(ui, |ui| match start {
+        let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
             Some(page) => page.ui(ui, &mut context),
             None => {
                 let mut docked = Docked { panels, context: &mut context, rearranged: false };

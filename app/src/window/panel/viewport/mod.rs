@@ -76,7 +76,7 @@ impl ViewportPanel {
             return;
         }
         self.aspect = size.x / size.y;
-        if let Some(held) = ui.input(|input| input.events.iter().filter_map(pressed_with).last()) {
+        if let Some(held) = ui.input(|input| input.events.iter().rev().find_map(pressed_with)) {
             self.held = held;
         }
         self.drag(&response, context);

@@ -91,8 +91,9 @@ impl Session {
 
     /// Changes the document as one labelled step, see [`History::edit`]; `target` is what is edited.
     pub fn edit(&mut self, label: &str, target: &str, change: impl FnOnce(&mut Document)) {
+        let before = self.history.current().clone();
         if self.history.edit(label, target, self.now_secs, change) {
-            self.refresh();
+            self.follow(&before);
         }
     }
 
@@ -103,15 +104,17 @@ impl Session {
 
     /// Takes back the last step and returns its label.
     pub fn undo(&mut self) -> Option<String> {
+        let before = self.history.current().clone();
         let label = self.history.undo()?.label.clone();
-        self.refresh();
+        self.follow(&before);
         Some(label)
     }
 
     /// Does the last undone step again and returns its label.
     pub fn redo(&mut self) -> Option<String> {
+        let before = self.history.current().clone();
         let label = self.history.redo()?.label.clone();
-        self.refresh();
+        self.follow(&before);
         Some(label)
     }
 
@@ -188,6 +191,23 @@ impl Session {
             of_objects.push(self.selection.material);
         }
         of_objects
+    }
+
+    /// Follows a change of the document. The scene stays the same `Arc` where only the view moved.
+    fn follow(&mut self, before: &Document) {
+        let now = self.document();
+        let same = before.materials == now.materials
+            && before.scene == now.scene
+            && before.environment == now.environment
+            && before.assignments == now.assignments
+            && before.objects == now.objects
+            && before.presets == now.presets
+            && before.lighting == now.lighting;
+        if same {
+            self.revision += 1;
+        } else {
+            self.refresh();
+        }
     }
 
     fn refresh(&mut self) {

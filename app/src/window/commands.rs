@@ -57,6 +57,8 @@ pub enum Command {
     Orthographic,
     /// Keeps the point of view.
     SaveCamera,
+    /// What importers said.
+    Notices,
     /// The palette.
     Palette,
     /// The shortcut page.
@@ -189,6 +191,7 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::View, Command::Theme, "Light or dark", None, "Change between the light and the dark theme."),
     entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
     entry(Menu::Help, Command::Palette, "Command palette", ctrl(Key::K), "Find any command by its name."),
+    entry(Menu::Help, Command::Notices, "Notices", None, "What was left out or repaired in the files that were read."),
     entry(Menu::Help, Command::Shortcuts, "Shortcuts", key(Key::F1), "All shortcuts and gestures."),
 ];
 

@@ -42,20 +42,20 @@ pub struct Workbench {
 
 impl Workbench {
     /// The workbench as it is at first.
-    pub fn new(_ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
-        let scene = options.scene.clone().unwrap_or_else(|| document::DEFAULT_SCENE.into());
-        let opened =
-            document::open(&scene).unwrap_or_else(|_| document::reload(Default::default(), &Default::default()));
+    pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
+        let opened = document::reload(Default::default(), &Default::default());
+        let opened = document::open(document::DEFAULT_SCENE).unwrap_or(opened);
+        let (files, preferences) = Files::new(&options, &stage, ctx);
         Workbench {
             session: Session::new(opened, None),
-            preferences: Preferences::default(),
+            preferences,
             stage,
             panels: Panels::default(),
             tree: default_layout(),
-            start: options.scene.is_none().then(StartPage::default),
+            start: (options.scene.is_none() && !options.recover).then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
-            files: Files::default(),
+            files,
         }
     }
 
@@ -69,19 +69,38 @@ impl Workbench {
         &mut self.session
     }
 
+    /// A file is being read or written by another thread.
+    pub fn is_busy(&self) -> bool {
+        self.files.is_busy()
+    }
+
+    /// Writes unsaved edits into the recovery file and waits for it: for when the program is about to end badly.
+    pub fn keep_recovery(&mut self) -> Result<(), String> {
+        self.files.keep_now(&self.session)
+    }
+
     /// Draws everything and then does what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         self.session.now_secs = ui.input(|input| input.time);
-        self.shortcuts(ui);
+        if !self.files.is_modal() {
+            self.shortcuts(ui);
+        }
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
         let Workbench { session, preferences, stage, panels, tree, start, status, requests, files } = self;
         let mut context = Context { session, preferences, stage, requests };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
+        if start.is_none() {
+            files.banner_ui(ui, &mut context);
+        }
         egui::CentralPanel::no_frame().show(ui, |ui| match start {
-            Some(page) => page.ui(ui, &mut context),
+            Some(page) => {
+                if page.ui(ui, &mut context, files.is_modal()) {
+                    *start = None;
+                }
+            }
             None => tree.ui(&mut Docked { panels, context: &mut context }, ui),
         });
-        files.frame(ui, session, preferences, requests);
+        files.frame(ui, &mut context);
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());
         }
@@ -92,7 +111,12 @@ impl Workbench {
         match request {
             Request::Command(command) => self.command(command, ctx),
             Request::Notice(_) | Request::Error(_) => {}
-            about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
+            about_files => {
+                if !matches!(about_files, Request::PickFile(_)) {
+                    self.start = None;
+                }
+                self.files.fulfil(about_files, &mut self.session, ctx);
+            }
         }
     }
 
@@ -110,7 +134,8 @@ impl Workbench {
             | Command::Save
             | Command::SaveAs
             | Command::SaveImage
-            | Command::Quit => self.files.command(command, &mut self.session, &mut self.preferences, ctx),
+            | Command::Notices
+            | Command::Quit => self.files.command(command, &mut self.session, &self.stage, ctx),
             Command::Frame
             | Command::FrameAll
             | Command::ViewFront

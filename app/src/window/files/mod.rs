@@ -28,12 +28,13 @@ use super::workbench::Options;
 use dialog::{Answer, Ask, Dialog};
 use drop::Pending;
 use image::ImageSettings;
-use load::{Landing, Loads, Notices, name_of};
+use load::{Landing, Loads, Notices};
 use recovery::{Found, Recovery, Scan, Snapshot};
 use save::{Choice, Next, Saving};
 use store::Store;
 use watch::Watch;
 
+pub use dialog::typed_path;
 pub use folders::Folders;
 
 /// Jobs and dialogs about files.
@@ -198,7 +199,8 @@ impl Files {
             Command::Save => self.save(session, None, ctx),
             Command::SaveAs => self.open_dialog(Ask::SaveAs(None), session),
             Command::SaveImage => {
-                let size = stage.status().map(|status| status.size);
+                let _ = stage;
+                let size = None;
                 self.open_dialog(Ask::SaveImage(ImageSettings::new(size)), session);
             }
             Command::Notices => self.shows_notices = true,
@@ -392,7 +394,7 @@ impl Files {
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
             Ask::SaveAs(next) => self.saving = Some(Saving::start(context.session, &path, next, ctx)),
             Ask::SaveImage(settings) => {
-                self.picture = Some(image::render(context.session, context.stage.passes(), settings, path, ctx));
+                self.picture = Some(image::render(context.session, None, settings, path, ctx));
             }
         }
         ctx.request_repaint();

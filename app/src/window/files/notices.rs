@@ -68,7 +68,7 @@ fn row_ui(ui: &mut egui::Ui, text: &str, hover: &str, buttons: impl FnOnce(&mut 
 /// A button whose name for assistive technology also says what it is about.
 fn button(ui: &mut egui::Ui, text: &str, name: &str, hover: &str) -> egui::Response {
     let response = ui.add(Button::new(text).small()).on_hover_text(hover);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, name));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     response
 }
 

@@ -49,6 +49,7 @@ pub(crate) struct Jitter {
 pub(crate) struct Encoding {
     scene_group: wgpu::BindGroup,
     viewer: Vec4,
+    samples: u32,
 }
 
 impl Encoding {
@@ -64,7 +65,7 @@ impl Encoding {
         let gpu = &passes.gpu;
         let uniform = gpu.buffer("view", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let scene_group = resident.on_gpu.group(&gpu.device, &passes.scene_layout, &uniform);
-        Encoding { scene_group, viewer: data.viewer }
+        Encoding { scene_group, viewer: data.viewer, samples: data.samples }
     }
 
     /// What the surfaces are.
@@ -88,7 +89,7 @@ impl Encoding {
         rows: Range<u32>,
     ) {
         let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights];
-        passes.classical.encode(encoder, &targets.frame, groups, rows);
+        passes.classical.encode(encoder, &targets.frame, groups, self.samples, rows);
     }
 
     /// Blended surfaces over them.

@@ -1,5 +1,7 @@
 //! The compiled pipelines of all passes, independent of any scene and shared by everything that draws on a device.
 
+use std::sync::Arc;
+
 use crate::device::Gpu;
 use crate::pass::accumulate::AccumulatePass;
 use crate::pass::classical::{ClassicalPass, light_layout};
@@ -11,7 +13,7 @@ use crate::pass::scene_layout;
 use crate::pass::shadow::ShadowPass;
 use crate::scene::material_layout;
 
-/// A device and every pipeline on it. Compiling takes long; share it in an `Arc`.
+/// A device and every pipeline on it, compiled when first needed. Compiling takes long: share it in an `Arc`.
 pub struct Passes {
     pub(crate) gpu: Gpu,
     pub(crate) scene_layout: wgpu::BindGroupLayout,
@@ -27,7 +29,7 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// Compiles the pipelines.
+    /// Compiles what environments need.
     pub fn new(gpu: &Gpu) -> Passes {
         let device = &gpu.device;
         let material_layout = material_layout(device);
@@ -49,6 +51,16 @@ impl Passes {
             material_layout,
             light_layout,
         }
+    }
+
+    /// Compiles in another thread what the first sharp picture will need.
+    pub(crate) fn warm_up(self: &Arc<Passes>) {
+        let passes = self.clone();
+        let compile = move || {
+            passes.classical.pipeline(1);
+        };
+        // Where there is no thread to be had it is compiled when it is needed.
+        let _ = std::thread::Builder::new().name("pipelines".into()).spawn(compile);
     }
 
     /// The device.

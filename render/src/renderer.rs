@@ -17,7 +17,7 @@ use crate::pass::accumulate::Sums;
 use crate::pass::environment::EnvironmentMaps;
 use crate::passes::Passes;
 use crate::readback::read_texture;
-use crate::resident::{Loader, Resident};
+use crate::resident::{Loader, Quality, Resident};
 
 pub use crate::frame::clip_from_world;
 
@@ -51,7 +51,7 @@ impl Renderer {
 
     /// Uploads the scene for passes that are compiled already.
     pub fn with_passes(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Result<Renderer, RenderError> {
-        let mut loader = Loader::new(passes);
+        let mut loader = Loader::new(passes, Quality::Full);
         let resident = loader.load(scene, Masking::Correlated, None)?;
         Ok(Renderer { loader, resident, targets: None })
     }

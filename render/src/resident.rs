@@ -26,6 +26,16 @@ pub(crate) struct Loader {
     materials: MaterialGroups,
     tables: TableCache,
     environments: EnvironmentCache,
+    quality: Quality,
+}
+
+/// How environments are prepared that were not seen before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Quality {
+    /// In full, however long it takes.
+    Full,
+    /// Coarse at once; [`Loader::refined`] brings the rest.
+    Coarse,
 }
 
 /// A scene ready to be drawn.
@@ -34,6 +44,8 @@ pub(crate) struct Resident {
     pub masking: Masking,
     pub on_gpu: GpuScene,
     pub maps: Arc<EnvironmentMaps>,
+    /// The quality of the maps.
+    pub quality: Quality,
     pub shadows: Shadows,
     /// Bind group 2 of what lights surfaces.
     pub lights: wgpu::BindGroup,
@@ -47,12 +59,13 @@ struct TableBuffer {
 }
 
 impl Loader {
-    pub fn new(passes: &Arc<Passes>) -> Loader {
+    pub fn new(passes: &Arc<Passes>, quality: Quality) -> Loader {
         Loader {
             passes: passes.clone(),
             materials: MaterialGroups::new(&passes.gpu, &passes.material_layout),
             tables: TableCache::default(),
             environments: EnvironmentCache::default(),
+            quality,
         }
     }
 
@@ -68,7 +81,7 @@ impl Loader {
         let gpu = &passes.gpu;
         let tables = Tables::new(&mut self.tables, scene, masking);
         let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, before.map(|b| &b.on_gpu))?;
-        let maps = self.environments.get(&passes, environment)?;
+        let (maps, quality) = self.environments.get(&passes, environment, self.quality)?;
         let bounds = match before {
             Some(before) if same_places(&before.scene, scene) => before.bounds,
             _ => scene.bounds(),
@@ -90,7 +103,12 @@ impl Loader {
         };
         let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, &tables.buffer);
         gpu.check()?;
-        Ok(Resident { scene: scene.clone(), masking, on_gpu, maps, shadows, lights, bounds, tables })
+        Ok(Resident { scene: scene.clone(), masking, on_gpu, maps, quality, shadows, lights, bounds, tables })
+    }
+
+    /// Takes over cubes that were prepared in full for an environment; scenes loaded from now on have them.
+    pub fn refined(&mut self, environment: &Environment, maps: EnvironmentMaps) {
+        self.environments.insert(environment, Arc::new(maps), Quality::Full);
     }
 }
 
@@ -109,30 +127,51 @@ fn same_places(a: &Scene, b: &Scene) -> bool {
 /// Prepared environments, the last used first. Turned and scaled copies of one map share its cubes.
 #[derive(Default)]
 struct EnvironmentCache {
-    known: Vec<(Arc<[Vec3]>, u32, Arc<EnvironmentMaps>)>,
+    known: Vec<Prepared>,
+}
+
+struct Prepared {
+    texels: Arc<[Vec3]>,
+    width: u32,
+    maps: Arc<EnvironmentMaps>,
+    quality: Quality,
 }
 
 impl EnvironmentCache {
-    fn get(&mut self, passes: &Passes, environment: &Environment) -> Result<Arc<EnvironmentMaps>, RenderError> {
-        let Environment { texels, width, .. } = environment;
-        let place = self.known.iter().position(|(known, of, _)| Arc::ptr_eq(known, texels) && of == width);
-        let entry = match place {
-            Some(place) => self.known.remove(place),
-            None => {
-                let maps = passes.environment.build(&passes.gpu, environment)?;
-                (texels.clone(), *width, Arc::new(maps))
-            }
+    fn get(
+        &mut self,
+        passes: &Passes,
+        environment: &Environment,
+        quality: Quality,
+    ) -> Result<(Arc<EnvironmentMaps>, Quality), RenderError> {
+        let known = self.known.iter().find(|prepared| prepared.is_of(environment));
+        let (maps, quality) = match (known, quality) {
+            (Some(prepared), _) => (prepared.maps.clone(), prepared.quality),
+            (None, Quality::Full) => (Arc::new(passes.environment.build(&passes.gpu, environment)?), quality),
+            (None, Quality::Coarse) => (Arc::new(passes.environment.coarse(&passes.gpu, environment)?), quality),
         };
-        let maps = entry.2.clone();
-        self.known.insert(0, entry);
+        self.insert(environment, maps.clone(), quality);
+        Ok((maps, quality))
+    }
+
+    /// Puts it first, in the place of what there was of this map, and forgets what is too much.
+    fn insert(&mut self, environment: &Environment, maps: Arc<EnvironmentMaps>, quality: Quality) {
+        self.known.retain(|prepared| !prepared.is_of(environment));
+        let Environment { texels, width, .. } = environment;
+        self.known.insert(0, Prepared { texels: texels.clone(), width: *width, maps, quality });
         let mut spare = 0;
-        let kept = self.known.iter().skip(1).take_while(|(_, _, maps)| {
-            spare += bytes(maps);
+        let kept = self.known.iter().skip(1).take_while(|prepared| {
+            spare += bytes(&prepared.maps);
             spare <= SPARE_ENVIRONMENT_BYTES
         });
         let kept = 1 + kept.count();
         self.known.truncate(kept);
-        Ok(maps)
+    }
+}
+
+impl Prepared {
+    fn is_of(&self, environment: &Environment) -> bool {
+        Arc::ptr_eq(&self.texels, &environment.texels) && self.width == environment.width
     }
 }
 

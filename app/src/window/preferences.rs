@@ -28,6 +28,10 @@ pub struct Preferences {
     pub ui_scale: f32,
     /// Mouse buttons of the viewport.
     pub navigation: Navigation,
+    /// Factor on how far a drag or a turn of the wheel goes, 0.1 to 10.
+    pub navigation_speed: f32,
+    /// Zooms the other way.
+    pub invert_zoom: bool,
 }
 
 /// Which mouse buttons turn, shift and zoom. None needs Alt alone: window managers take it.
@@ -51,6 +55,8 @@ impl Default for Preferences {
             dark: None,
             ui_scale: 1.0,
             navigation: Navigation::default(),
+            navigation_speed: 1.0,
+            invert_zoom: false,
         }
     }
 }

@@ -36,6 +36,8 @@ pub enum Request {
     },
     /// Ask for a file with a dialog.
     PickFile(Purpose),
+    /// Write the recovery file now: what draws the window has failed.
+    WriteRecovery,
     /// Say something that passes.
     Notice(String),
     /// Say what went wrong, in words.

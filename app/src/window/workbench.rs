@@ -74,9 +74,14 @@ impl Workbench {
         self.files.is_busy()
     }
 
-    /// Writes unsaved edits into the recovery file and waits for it: for when the program is about to end badly.
-    pub fn keep_recovery(&mut self) -> Result<(), String> {
-        self.files.keep_now(&self.session)
+    /// The source of the picture.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// The source of the picture, for trials of its faults.
+    pub fn stage_mut(&mut self) -> &mut Stage {
+        &mut self.stage
     }
 
     /// Draws everything and then does what was asked for.
@@ -112,7 +117,7 @@ impl Workbench {
             Request::Command(command) => self.command(command, ctx),
             Request::Notice(_) | Request::Error(_) => {}
             about_files => {
-                if !matches!(about_files, Request::PickFile(_)) {
+                if !matches!(about_files, Request::PickFile(_) | Request::WriteRecovery) {
                     self.start = None;
                 }
                 self.files.fulfil(about_files, &mut self.session, ctx);

@@ -8,9 +8,12 @@ pub mod forward;
 pub mod gbuffer;
 pub mod shadow;
 
+use std::sync::OnceLock;
+
 use crate::device::Gpu;
 use crate::pass::gbuffer::VERTEX_LAYOUT;
 use crate::scene::Variant;
+use crate::shader::Shader;
 
 /// Layout of what every drawing pass binds at group 0: view, instances, materials.
 pub fn scene_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
@@ -121,56 +124,73 @@ pub(crate) fn fullscreen_pipeline(
     })
 }
 
-/// What tells one mesh pipeline from another.
-pub(crate) struct MeshPipeline<'a> {
-    pub label: &'a str,
-    pub layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    pub module: &'a wgpu::ShaderModule,
+/// Pipelines of a pass over meshes, one a [`Variant`], compiled when first drawn with: compiling the largest takes as
+/// long as a frame, and most scenes need few.
+pub(crate) struct MeshPipelines {
+    device: wgpu::Device,
+    layout: wgpu::PipelineLayout,
+    kind: MeshKind,
+    module: OnceLock<wgpu::ShaderModule>,
+    variants: [OnceLock<wgpu::RenderPipeline>; 4],
+}
+
+/// What tells one mesh pass from another.
+pub(crate) struct MeshKind {
+    pub shader: &'static Shader,
     pub depth: wgpu::DepthStencilState,
     /// Targets of the fragment stage; without one only depth is written.
-    pub targets: Option<&'a [Option<wgpu::ColorTargetState>]>,
-    pub constants: &'a [(&'a str, f64)],
+    pub targets: Option<Vec<Option<wgpu::ColorTargetState>>>,
+    pub constants: Vec<(&'static str, f64)>,
     /// Back faces are drawn whatever the material says.
     pub both_sides: bool,
 }
 
-impl MeshPipeline<'_> {
-    /// The pipelines of all variants, in the order of [`Variant::ALL`].
-    pub fn create(&self, device: &wgpu::Device) -> [wgpu::RenderPipeline; 4] {
+impl MeshPipelines {
+    pub fn new(device: &wgpu::Device, layouts: &[Option<&wgpu::BindGroupLayout>], kind: MeshKind) -> MeshPipelines {
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(self.label),
-            bind_group_layouts: self.layouts,
+            label: Some(kind.shader.name),
+            bind_group_layouts: layouts,
             immediate_size: 0,
         });
-        Variant::ALL.map(|variant| {
-            let mut primitive = variant.primitive();
-            if self.both_sides {
-                primitive.cull_mode = None;
-            }
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(self.label),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: self.module,
-                    entry_point: Some("vertex"),
-                    compilation_options: Default::default(),
-                    buffers: &[Some(VERTEX_LAYOUT)],
+        let variants = std::array::from_fn(|_| OnceLock::new());
+        MeshPipelines { device: device.clone(), layout, kind, module: OnceLock::new(), variants }
+    }
+
+    /// The pipeline of a variant.
+    pub fn get(&self, variant: Variant) -> &wgpu::RenderPipeline {
+        self.variants[variant.index()].get_or_init(|| self.create(variant))
+    }
+
+    fn create(&self, variant: Variant) -> wgpu::RenderPipeline {
+        let MeshPipelines { device, layout, kind, module, .. } = self;
+        let module = module.get_or_init(|| kind.shader.module(device));
+        let mut primitive = variant.primitive();
+        if kind.both_sides {
+            primitive.cull_mode = None;
+        }
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(kind.shader.name),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[Some(VERTEX_LAYOUT)],
+            },
+            primitive,
+            depth_stencil: Some(kind.depth.clone()),
+            multisample: Default::default(),
+            fragment: kind.targets.as_ref().map(|targets| wgpu::FragmentState {
+                module,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &kind.constants,
+                    ..Default::default()
                 },
-                primitive,
-                depth_stencil: Some(self.depth.clone()),
-                multisample: Default::default(),
-                fragment: self.targets.map(|targets| wgpu::FragmentState {
-                    module: self.module,
-                    entry_point: Some("fragment"),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: self.constants,
-                        ..Default::default()
-                    },
-                    targets,
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+                targets,
+            }),
+            multiview_mask: None,
+            cache: None,
         })
     }
 }

@@ -12,6 +12,7 @@ use glam::{Mat3, Mat4, Vec3};
 use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::layout::types::{InstanceData, MaterialData};
+use crate::pass::MeshPipelines;
 use crate::tables::Tables;
 
 pub use geometry::{Geometry, VERTEX_ATTRIBUTES, VERTEX_STRIDE};
@@ -181,6 +182,24 @@ impl GpuScene {
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass, draw: &Draw) {
         pass.set_bind_group(1, &self.material_groups[draw.material], &[]);
         pass.draw_indexed(draw.indices.clone(), draw.base_vertex, draw.instance..draw.instance + 1);
+    }
+
+    /// Draws every instance that is wanted, variant by variant.
+    pub(crate) fn draw_all(
+        &self,
+        pass: &mut wgpu::RenderPass,
+        pipelines: &MeshPipelines,
+        wanted: impl Fn(&Draw) -> bool,
+    ) {
+        for variant in Variant::ALL {
+            let mut draws = self.draws.iter().filter(|draw| draw.variant == variant && wanted(draw)).peekable();
+            if draws.peek().is_some() {
+                pass.set_pipeline(pipelines.get(variant));
+            }
+            for draw in draws {
+                self.draw(pass, draw);
+            }
+        }
     }
 
     /// Group 0 with the given view.

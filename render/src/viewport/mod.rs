@@ -16,11 +16,12 @@ use glam::{Affine3A, UVec2, Vec2, Vec3};
 use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::frame::{Encoding, Jitter, Targets};
+use crate::pass::environment::{Progress, Refinement};
 use crate::pass::{display, target};
 use crate::passes::Passes;
 use crate::readback::read_texel;
 use crate::renderer::check_size;
-use crate::resident::{Loader, Resident};
+use crate::resident::{Loader, Quality, Resident};
 use pace::Pace;
 use still::Still;
 
@@ -100,6 +101,8 @@ pub struct Viewport {
     shown: Shown,
     /// The scene changed since the last frame.
     stale: bool,
+    /// The finer cubes of the resident's environment, and the share that is done.
+    preparing: Option<(Refinement, f32)>,
     last: Option<(Key, Camera)>,
     display: Option<(ToneMap, f32)>,
 }
@@ -112,14 +115,16 @@ impl Viewport {
 
     /// A viewport with passes that are compiled already.
     pub fn with_passes(passes: &Arc<Passes>) -> Viewport {
+        passes.warm_up();
         Viewport {
-            loader: Loader::new(passes),
+            loader: Loader::new(passes, Quality::Coarse),
             resident: None,
             pace: Pace::new(passes.gpu.is_software()),
             quick: None,
             full: None,
             shown: Shown::Nothing,
             stale: false,
+            preparing: None,
             last: None,
             display: None,
         }
@@ -140,7 +145,13 @@ impl Viewport {
         if self.resident.as_ref().is_some_and(|old| Arc::ptr_eq(&old.scene, scene) && old.masking == masking) {
             return Ok(());
         }
-        self.resident = Some(self.loader.load(scene, masking, self.resident.as_ref())?);
+        let old = self.resident.as_ref();
+        let resident = self.loader.load(scene, masking, old)?;
+        if old.is_none_or(|old| !Arc::ptr_eq(&old.maps, &resident.maps)) {
+            let coarse = resident.scene.environment.as_ref().filter(|_| resident.quality == Quality::Coarse);
+            self.preparing = coarse.map(|environment| (Refinement::new(environment), 0.0));
+        }
+        self.resident = Some(resident);
         self.stale = true;
         Ok(())
     }
@@ -175,6 +186,9 @@ impl Viewport {
         } else if !frame.moving {
             self.refine(&passes, &frame.camera, &settings)?;
         }
+        if !gpu.is_software() {
+            self.prepare(&passes)?;
+        }
         let display = (frame.tone, frame.exposure_ev);
         if changed || before != (self.shown, self.frames()) || self.display != Some(display) {
             self.show(&passes, display);
@@ -185,13 +199,14 @@ impl Viewport {
     }
 
     fn drawn(&self, frame: &Frame, start: Instant) -> Drawn {
-        let settled = !frame.moving && self.full.as_ref().is_some_and(|(_, still)| still.settled());
+        let settled =
+            !frame.moving && self.preparing.is_none() && self.full.as_ref().is_some_and(|(_, still)| still.settled());
         let unshadowed = self.resident.iter().flat_map(|resident| &resident.shadows.unshadowed);
         Drawn {
             size: self.canvas().map_or(UVec2::ZERO, |canvas| canvas.targets.size),
             frames: self.frames(),
             settled,
-            preparing: None,
+            preparing: self.preparing.as_ref().map(|(_, share)| *share),
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
             notices: unshadowed
                 .map(|name| format!("light `{name}` casts no shadow: the shadow maps are full"))
@@ -249,18 +264,51 @@ impl Viewport {
         Ok(())
     }
 
-    /// A part of the sharp picture.
+    /// A part of the sharp picture, or of what it needs. One whole frame comes first: it is sharp, if not yet right.
     fn refine(&mut self, passes: &Passes, camera: &Camera, settings: &FrameSettings) -> Result<(), RenderError> {
-        let (Some(resident), Some((key, _))) = (&self.resident, &self.last) else { return Ok(()) };
-        let (canvas, still) = self.full.get_or_insert_with(|| full_canvas(passes, key.size));
-        if still.settled() {
+        let Some((key, _)) = &self.last else { return Ok(()) };
+        let size = key.size;
+        let begun = self.full.get_or_insert_with(|| full_canvas(passes, size)).1.begun();
+        if begun && passes.gpu.is_software() && self.prepare(passes)? {
             return Ok(());
         }
-        still.advance(passes, resident, canvas, (camera, settings), &mut self.pace)?;
-        if still.frames > 0 {
+        let (Some(resident), Some((canvas, still))) = (&self.resident, &mut self.full) else { return Ok(()) };
+        if !still.settled() {
+            still.advance(passes, resident, canvas, (camera, settings), &mut self.pace)?;
+        }
+        if still.begun() {
             self.shown = Shown::Still;
         }
         Ok(())
+    }
+
+    /// A part of the finer cubes of the environment. True when the device was kept busy by it.
+    fn prepare(&mut self, passes: &Passes) -> Result<bool, RenderError> {
+        let Some((refinement, share)) = &mut self.preparing else { return Ok(false) };
+        let before = *share;
+        let budget = self.pace.preparing();
+        match refinement.advance(&passes.gpu, &passes.environment, budget)? {
+            Progress::Working(now) => {
+                *share = now;
+                if passes.gpu.is_software() {
+                    passes.gpu.wait()?;
+                }
+                Ok(now > before)
+            }
+            Progress::Finished(maps) => {
+                self.preparing = None;
+                let Some(old) = &self.resident else { return Ok(true) };
+                if let Some(environment) = &old.scene.environment {
+                    self.loader.refined(environment, *maps);
+                }
+                self.resident = Some(self.loader.load(&old.scene, old.masking, Some(old))?);
+                // The picture on the screen stays until there is a better one as large.
+                if let Some((_, still)) = &mut self.full {
+                    still.restart();
+                }
+                Ok(true)
+            }
+        }
     }
 
     /// Puts the picture through the display transform.

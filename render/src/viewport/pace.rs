@@ -1,11 +1,16 @@
 //! How much is drawn at a time, so that a software rasteriser keeps up with a hand: measured, then predicted.
 
+use std::time::Duration;
+
 use glam::UVec2;
 
 /// Milliseconds of a frame while something moves. The window itself takes about 25 of the 125 of 8 frames a second.
 const MOVING_MS: f64 = 70.0;
 /// Milliseconds of refinement between two looks at the input.
 const STILL_MS: f64 = 90.0;
+/// Time for the cubes of an environment between two looks at the input: on a software rasteriser, where nothing else is
+/// drawn meanwhile, and on others, beside the frames.
+const PREPARING: [Duration; 2] = [Duration::from_millis(60), Duration::from_millis(6)];
 /// Shares of the window's width and height that may be drawn.
 const SCALES: [f32; 8] = [1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 0.32, 0.25];
 /// Fewest rows that are lit at a time.
@@ -35,9 +40,9 @@ impl Pace {
         if self.software { scaled(window, SCALES[self.scale]) } else { window }
     }
 
-    /// Samples of a lobe while something moves.
+    /// Samples of a lobe while something moves: a software rasteriser looks each up once, which costs a tenth.
     pub fn moving_samples(&self, samples: u32) -> u32 {
-        if self.software { samples.min(MOVING_SAMPLES) } else { samples }
+        if self.software { 0 } else { samples }
     }
 
     /// Learns from a moving frame: milliseconds of its surfaces and of the rest.
@@ -53,6 +58,11 @@ impl Pace {
             // One step at a time, and with room to spare: a resolution that flickers is worse than a low one.
             self.scale -= 1;
         }
+    }
+
+    /// Time for the cubes of an environment.
+    pub fn preparing(&self) -> Duration {
+        PREPARING[usize::from(!self.software)]
     }
 
     /// Rows to light next after so many milliseconds; 0 when the time is up.
@@ -82,11 +92,13 @@ impl Pace {
     }
 }
 
-/// Samples of a lobe that a software rasteriser can afford while something moves.
-const MOVING_SAMPLES: u32 = 4;
-
+/// Never a power of two across or down: llvmpipe compiles its shaders once more for such textures.
 fn scaled(window: UVec2, scale: f32) -> UVec2 {
-    (window.as_vec2() * scale).round().as_uvec2().max(UVec2::ONE)
+    let side = |pixels: u32| {
+        let pixels = (pixels as f32 * scale).round() as u32;
+        if pixels.is_power_of_two() && pixels > 2 { pixels - 1 } else { pixels.max(1) }
+    };
+    if scale == 1.0 { window } else { UVec2::new(side(window.x), side(window.y)) }
 }
 
 fn pixels(size: UVec2) -> f64 {

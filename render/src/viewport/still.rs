@@ -17,8 +17,10 @@ pub(crate) const FRAMES: u32 = 16;
 /// Sums and how far they are.
 pub(crate) struct Still {
     pub sums: Sums,
-    /// Whole frames in the sums.
+    /// Whole frames in the sums; after a restart still those of the picture before.
     pub frames: u32,
+    /// Whole frames since the restart.
+    done: u32,
     current: Option<Current>,
 }
 
@@ -37,17 +39,22 @@ fn order(n: u32) -> u32 {
 
 impl Still {
     pub fn new(passes: &Passes, canvas: &Canvas) -> Still {
-        Still { sums: Sums::new(&passes.gpu, canvas.targets.size), frames: 0, current: None }
+        Still { sums: Sums::new(&passes.gpu, canvas.targets.size), frames: 0, done: 0, current: None }
     }
 
-    /// Starts anew.
+    /// Starts anew. The sums stay what they are until the first frame is whole.
     pub fn restart(&mut self) {
-        self.frames = 0;
+        self.done = 0;
         self.current = None;
     }
 
+    /// There is a whole frame of the present scene.
+    pub fn begun(&self) -> bool {
+        self.done > 0
+    }
+
     pub fn settled(&self) -> bool {
-        self.frames >= FRAMES
+        self.done >= FRAMES
     }
 
     /// Draws on until a frame is whole or the time is up.
@@ -64,7 +71,7 @@ impl Still {
         let Current { encoding, rows } = match &mut self.current {
             Some(current) => current,
             None => {
-                let jitter = Jitter { frame: order(self.frames), frames: FRAMES };
+                let jitter = Jitter { frame: order(self.done), frames: FRAMES };
                 let encoding = Encoding::new(passes, resident, camera, targets.size, settings, jitter);
                 let ms = super::timed(gpu, |encoder| encoding.surfaces(passes, encoder, resident, targets))?;
                 pace.note_surfaces(ms);
@@ -86,12 +93,13 @@ impl Still {
         }
         super::timed(gpu, |encoder| {
             encoding.blend(passes, encoder, resident, targets);
-            if self.frames == 0 {
+            if self.done == 0 {
                 self.sums.clear(encoder);
             }
             passes.accumulate.encode(gpu, encoder, &targets.frame, &mut self.sums);
         })?;
-        self.frames += 1;
+        self.done += 1;
+        self.frames = self.done;
         self.current = None;
         Ok(())
     }

@@ -59,7 +59,9 @@ impl ImageSettings {
         ui.horizontal(|ui| {
             let label = ui.label("Frames");
             let drag = egui::DragValue::new(&mut self.frames).range(1..=1024).speed(0.5);
-            ui.add(drag).labelled_by(label.id).on_hover_text("Frames, each moved by a part of a pixel, that are averaged");
+            ui.add(drag)
+                .labelled_by(label.id)
+                .on_hover_text("Frames, each moved by a part of a pixel, that are averaged");
         });
         // Kept within what an adapter takes, at the same width.
         self.size.y = self.size.y.min(MAX_PIXELS / self.size.x.max(1)).max(1);

@@ -54,11 +54,7 @@ pub struct Load {
 }
 
 impl Load {
-    fn new(
-        label: String,
-        exclusive: bool,
-        work: impl FnOnce() -> Result<Apply, String> + Send + 'static,
-    ) -> Load {
+    fn new(label: String, exclusive: bool, work: impl FnOnce() -> Result<Apply, String> + Send + 'static) -> Load {
         Load { label, exclusive, work: Box::new(work) }
     }
 }
@@ -361,4 +357,3 @@ impl Landing<'_> {
         *self.notices = Notices { title, lines: lines.to_vec() };
     }
 }
-

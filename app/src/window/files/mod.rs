@@ -102,7 +102,8 @@ impl Files {
 
     /// A dialog has the keyboard, or a document is being read: commands wait.
     pub fn is_modal(&self) -> bool {
-        let asks = self.dialog.is_some() || self.guard.is_some() || !self.dropped.is_empty() || !self.offered.is_empty();
+        let asks =
+            self.dialog.is_some() || self.guard.is_some() || !self.dropped.is_empty() || !self.offered.is_empty();
         asks || self.loads.is_exclusive()
     }
 
@@ -111,11 +112,8 @@ impl Files {
         self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
     }
 
-    /// Writes the unsaved document into the recovery file and waits for it: for when the program is about to end badly.
+    /// Writes the document, saved or not, into the recovery file and waits for it: for when the program is about to end badly.
     pub fn keep_now(&mut self, session: &Session) -> Result<(), String> {
-        if !session.is_dirty() {
-            return Ok(());
-        }
         self.kept_revision = Some(session.revision);
         self.recovery.write_now(&snapshot(session))
     }
@@ -185,6 +183,10 @@ impl Files {
                     self.open_dialog(ask, session);
                 }
             }
+            Request::WriteRecovery => {
+                let fault = self.keep_now(session).err();
+                self.outbox.extend(fault.map(Request::Error));
+            }
             // Not about files.
             Request::Command(_) | Request::Notice(_) | Request::Error(_) => {}
         }
@@ -199,8 +201,7 @@ impl Files {
             Command::Save => self.save(session, None, ctx),
             Command::SaveAs => self.open_dialog(Ask::SaveAs(None), session),
             Command::SaveImage => {
-                let _ = stage;
-                let size = None;
+                let size = stage.status().map(|status| status.size);
                 self.open_dialog(Ask::SaveImage(ImageSettings::new(size)), session);
             }
             Command::Notices => self.shows_notices = true,
@@ -394,7 +395,7 @@ impl Files {
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
             Ask::SaveAs(next) => self.saving = Some(Saving::start(context.session, &path, next, ctx)),
             Ask::SaveImage(settings) => {
-                self.picture = Some(image::render(context.session, None, settings, path, ctx));
+                self.picture = Some(image::render(context.session, context.stage.passes(), settings, path, ctx));
             }
         }
         ctx.request_repaint();

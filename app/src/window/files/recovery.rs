@@ -84,12 +84,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Recovery {
     /// Keeps the recovery file in a folder, which is created when it is needed.
     pub fn new(folder: PathBuf) -> Recovery {
-        let shared = Arc::new(Shared {
-            folder,
-            slot: Mutex::default(),
-            changed: Condvar::new(),
-            file: Mutex::default(),
-        });
+        let shared =
+            Arc::new(Shared { folder, slot: Mutex::default(), changed: Condvar::new(), file: Mutex::default() });
         let writer = shared.clone();
         std::thread::spawn(move || write_until_the_end(&writer));
         Recovery { shared: Some(shared) }
@@ -209,7 +205,9 @@ impl Owned {
     fn new(folder: &Path) -> Result<Owned, String> {
         let fault = |e: std::io::Error| {
             let folder = folder.display();
-            format!("no recovery file can be kept in {folder} ({e}); make that folder writable, and save often until then")
+            format!(
+                "no recovery file can be kept in {folder} ({e}); make that folder writable, and save often until then"
+            )
         };
         fs::create_dir_all(folder).map_err(fault)?;
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -285,7 +283,8 @@ fn scan_once(folder: &Path) -> Scan {
         match lock.try_lock() {
             Err(TryLockError::WouldBlock) => scan.in_use += 1,
             // A disk without locks: better offered twice than never.
-            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_BYTES).ok().map(|b| parse(&b, &path)) {
+            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_BYTES).ok().map(|b| parse(&b, &path))
+            {
                 Some(Some((snapshot, time))) => {
                     let title = snapshot.title();
                     scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });

@@ -40,6 +40,10 @@ pub struct Context<'a> {
     pub requests: &'a mut Requests,
 }
 
+/// What is dragged out of the preset browser: the id of a preset.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DraggedPreset(pub String);
+
 /// A panel that can be docked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Pane {

@@ -78,7 +78,8 @@ impl StartPage {
         ui.horizontal(|ui| {
             let label = ui.label("Path");
             let width = ui.available_width() - 70.0;
-            let field = TextEdit::singleline(&mut self.path).hint_text(".gltf  .glb  .obj  .burnish").desired_width(width);
+            let field =
+                TextEdit::singleline(&mut self.path).hint_text(".gltf  .glb  .obj  .burnish").desired_width(width);
             let field = ui.add(field).labelled_by(label.id);
             if field.changed() {
                 self.fault = None;
@@ -114,7 +115,8 @@ impl StartPage {
         let mut gone = None;
         for path in context.preferences.recent.clone() {
             let in_gallery = path.starts_with("gallery:");
-            let is_there = *self.present.entry(path.clone()).or_insert_with(|| in_gallery || Path::new(&path).is_file());
+            let is_there =
+                *self.present.entry(path.clone()).or_insert_with(|| in_gallery || Path::new(&path).is_file());
             let file = Path::new(&path).file_name().filter(|_| !in_gallery);
             let name = file.map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
             let folder = Path::new(&path).parent().filter(|_| !in_gallery);

@@ -1,5 +1,7 @@
 //! Lights the G-buffer with lamps and the `classical` environment, and shows the environment behind it.
 
+use std::sync::OnceLock;
+
 use crate::device::Gpu;
 use crate::pass::environment::{EnvironmentMaps, cube_sampler, cube_view};
 use crate::pass::gbuffer::GBuffer;
@@ -70,18 +72,24 @@ pub fn light_group(
 }
 
 /// The largest radiance that a target holds, for `shade.wgsl`: halves overflow at 65 520.
-pub fn frame_constants(format: wgpu::TextureFormat) -> &'static [(&'static str, f64)] {
-    if format == wgpu::TextureFormat::Rgba16Float { &[("frame_max", 65_000.0)] } else { &[] }
+pub fn frame_constants(format: wgpu::TextureFormat) -> Vec<(&'static str, f64)> {
+    if format == wgpu::TextureFormat::Rgba16Float { vec![("frame_max", 65_000.0)] } else { Vec::new() }
 }
 
-/// The pipeline and the layout of the G-buffer as textures.
+/// The pipelines and the layout of the G-buffer as textures.
 pub struct ClassicalPass {
+    device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::RenderPipeline,
+    format: wgpu::TextureFormat,
+    layouts: [wgpu::BindGroupLayout; 3],
+    module: OnceLock<wgpu::ShaderModule>,
+    /// Looks lobes up once, whatever the view says; a software driver compiles it in a part of the time.
+    lookup: OnceLock<wgpu::RenderPipeline>,
+    sampled: OnceLock<wgpu::RenderPipeline>,
 }
 
 impl ClassicalPass {
-    /// Compiles the pipeline for targets of `format`.
+    /// Compiles nothing yet. The targets are of `format`.
     pub fn new(
         gpu: &Gpu,
         scene_layout: &wgpu::BindGroupLayout,
@@ -95,10 +103,27 @@ impl ClassicalPass {
             label: Some("gbuffer read"),
             entries: &[words(0), words(1), words(2), words(3), texture_entry(4, wgpu::TextureSampleType::Depth, flat)],
         });
-        let layouts = [Some(scene_layout), Some(&layout), Some(light_layout)];
-        let module = shader::CLASSICAL.module(device);
-        let pipeline = fullscreen_pipeline(device, "classical", &layouts, &module, format, frame_constants(format));
-        ClassicalPass { layout, pipeline }
+        ClassicalPass {
+            device: device.clone(),
+            format,
+            layouts: [scene_layout.clone(), layout.clone(), light_layout.clone()],
+            layout,
+            module: OnceLock::new(),
+            lookup: OnceLock::new(),
+            sampled: OnceLock::new(),
+        }
+    }
+
+    /// The pipeline for so many samples of a lobe. Blocks while it is compiled.
+    pub fn pipeline(&self, samples: u32) -> &wgpu::RenderPipeline {
+        let (cell, sampled) = if samples == 0 { (&self.lookup, 0.0) } else { (&self.sampled, 1.0) };
+        cell.get_or_init(|| {
+            let module = self.module.get_or_init(|| shader::CLASSICAL.module(&self.device));
+            let layouts = self.layouts.each_ref().map(Some);
+            let mut constants = frame_constants(self.format);
+            constants.push(("sampled", sampled));
+            fullscreen_pipeline(&self.device, "classical", &layouts, module, self.format, &constants)
+        })
     }
 
     /// The G-buffer as group 1.
@@ -122,6 +147,7 @@ impl ClassicalPass {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         groups: [&wgpu::BindGroup; 3],
+        samples: u32,
         rows: std::ops::Range<u32>,
     ) {
         let whole = rows.start == 0 && rows.end == target.texture().height();
@@ -130,7 +156,7 @@ impl ClassicalPass {
             color_attachments: &[if whole { cleared(target) } else { attachment(target, wgpu::LoadOp::Load) }],
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(self.pipeline(samples));
         pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
         for (index, group) in groups.into_iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);

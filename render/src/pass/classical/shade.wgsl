@@ -149,6 +149,9 @@ fn lamp_at(light: LightData, position: vec3f) -> Lamp {
 // Largest radiance that a frame holds, where the device blends half floats only.
 override frame_max: f32 = 3.0e38;
 
+// Without it lobes are looked up once, and the code that samples them is left out.
+override sampled: bool = true;
+
 fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let m = materials[instances[t.id - 1u].material];
     let s = surface_of(t, m);
@@ -176,7 +179,8 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let hash = sampling_pcg(pixel.x + sampling_pcg(pixel.y + sampling_pcg(view.frame)));
     let rotation = vec2f(sampling_unit(hash), sampling_unit(sampling_pcg(hash)));
     let lobes = ClassicalLobes(
-        view.samples, view.source_count, rotation, view.environment_mips, view.prefiltered_mips, view.wide_alpha,
+        select(0u, view.samples, sampled), view.source_count, rotation, view.environment_mips, view.prefiltered_mips,
+        view.wide_alpha,
     );
     value += classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, lobes);
     return min(value, vec3f(frame_max));

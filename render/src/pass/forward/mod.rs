@@ -5,34 +5,31 @@ use glam::{Vec3, Vec4};
 use crate::device::Gpu;
 use crate::pass::classical::frame_constants;
 use crate::pass::gbuffer::depth_state;
-use crate::pass::{MeshPipeline, attachment};
+use crate::pass::{MeshKind, MeshPipelines, attachment};
 use crate::scene::{Draw, GpuScene};
 use crate::shader;
 
 /// Pipelines, one for each [`crate::scene::Variant`].
 pub struct ForwardPass {
-    pipelines: [wgpu::RenderPipeline; 4],
+    pipelines: MeshPipelines,
 }
 
 impl ForwardPass {
-    /// Compiles the pipelines for targets of `format`.
+    /// Compiles nothing yet. The targets are of `format`.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>], format: wgpu::TextureFormat) -> ForwardPass {
         let target = wgpu::ColorTargetState {
             format,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::COLOR,
         };
-        let pipelines = MeshPipeline {
-            label: "forward",
-            layouts,
-            module: &shader::FORWARD.module(&gpu.device),
+        let kind = MeshKind {
+            shader: &shader::FORWARD,
             depth: depth_state(false),
-            targets: Some(&[Some(target)]),
+            targets: Some(vec![Some(target)]),
             constants: frame_constants(format),
             both_sides: false,
-        }
-        .create(&gpu.device);
-        ForwardPass { pipelines }
+        };
+        ForwardPass { pipelines: MeshPipelines::new(&gpu.device, layouts, kind) }
     }
 
     /// Draws the blended instances sorted by the distance of their centres from the viewer (homogeneous, see
@@ -68,7 +65,7 @@ impl ForwardPass {
         scene.bind(&mut pass, scene_group);
         pass.set_bind_group(2, light_group, &[]);
         for draw in draws {
-            pass.set_pipeline(&self.pipelines[draw.variant.index()]);
+            pass.set_pipeline(self.pipelines.get(draw.variant));
             scene.draw(&mut pass, draw);
         }
     }

@@ -3,8 +3,8 @@
 use glam::UVec2;
 
 use crate::device::Gpu;
-use crate::pass::{MeshPipeline, cleared, target};
-use crate::scene::{GpuScene, VERTEX_ATTRIBUTES, VERTEX_STRIDE, Variant};
+use crate::pass::{MeshKind, MeshPipelines, cleared, target};
+use crate::scene::{GpuScene, VERTEX_ATTRIBUTES, VERTEX_STRIDE};
 use crate::shader;
 
 /// Format of the four packed targets.
@@ -46,26 +46,23 @@ impl GBuffer {
     }
 }
 
-/// Pipelines, one for each [`Variant`].
+/// Pipelines, one for each [`crate::scene::Variant`].
 pub struct GBufferPass {
-    pipelines: [wgpu::RenderPipeline; 4],
+    pipelines: MeshPipelines,
 }
 
 impl GBufferPass {
-    /// Compiles the pipelines.
+    /// Compiles nothing yet.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>]) -> GBufferPass {
         let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
-        let pipelines = MeshPipeline {
-            label: "gbuffer",
-            layouts,
-            module: &shader::GBUFFER.module(&gpu.device),
+        let kind = MeshKind {
+            shader: &shader::GBUFFER,
             depth: depth_state(true),
-            targets: Some(&[Some(target.clone()), Some(target.clone()), Some(target.clone()), Some(target)]),
-            constants: &[],
+            targets: Some(vec![Some(target); 4]),
+            constants: Vec::new(),
             both_sides: false,
-        }
-        .create(&gpu.device);
-        GBufferPass { pipelines }
+        };
+        GBufferPass { pipelines: MeshPipelines::new(&gpu.device, layouts, kind) }
     }
 
     /// Draws all opaque and masked instances.
@@ -88,11 +85,6 @@ impl GBufferPass {
             ..Default::default()
         });
         scene.bind(&mut pass, scene_group);
-        for variant in Variant::ALL {
-            pass.set_pipeline(&self.pipelines[variant.index()]);
-            for draw in scene.draws.iter().filter(|d| !d.blended && d.variant == variant) {
-                scene.draw(&mut pass, draw);
-            }
-        }
+        scene.draw_all(&mut pass, &self.pipelines, |draw| !draw.blended);
     }
 }

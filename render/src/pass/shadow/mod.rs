@@ -10,9 +10,9 @@ use glam::{Mat4, Vec3};
 
 use crate::device::Gpu;
 use crate::layout::types::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, LightData, SHADOW_NONE, ViewData};
-use crate::pass::MeshPipeline;
 use crate::pass::gbuffer::{DEPTH_FORMAT, depth_state};
-use crate::scene::{GpuScene, Variant};
+use crate::pass::{MeshKind, MeshPipelines};
+use crate::scene::GpuScene;
 use crate::shader;
 use casters::Caster;
 
@@ -38,30 +38,27 @@ pub struct Shadows {
 
 /// Pipelines that fill the maps.
 pub struct ShadowPass {
-    opaque: [wgpu::RenderPipeline; 4],
-    masked: [wgpu::RenderPipeline; 4],
+    opaque: MeshPipelines,
+    masked: MeshPipelines,
 }
 
 impl ShadowPass {
-    /// Compiles the pipelines.
+    /// Compiles nothing yet.
     pub fn new(gpu: &Gpu, layouts: &[Option<&wgpu::BindGroupLayout>]) -> ShadowPass {
-        let module = shader::SHADOW.module(&gpu.device);
         let pipelines = |masked: bool| {
-            MeshPipeline {
-                label: "shadow",
-                layouts,
-                module: &module,
+            let kind = MeshKind {
+                shader: &shader::SHADOW,
                 depth: wgpu::DepthStencilState {
                     // Depth is reversed: away from the light is down.
                     bias: wgpu::DepthBiasState { constant: 0, slope_scale: -1.5, clamp: 0.0 },
                     ..depth_state(true)
                 },
-                targets: masked.then_some(&[]),
-                constants: &[],
+                targets: masked.then(Vec::new),
+                constants: Vec::new(),
                 // What blocks light does not depend on which side is shown.
                 both_sides: true,
-            }
-            .create(&gpu.device)
+            };
+            MeshPipelines::new(&gpu.device, layouts, kind)
         };
         ShadowPass { opaque: pipelines(false), masked: pipelines(true) }
     }
@@ -158,15 +155,8 @@ impl ShadowPass {
                 ..Default::default()
             });
             scene.bind(&mut pass, &group);
-            for (pipelines, masked) in [(&self.opaque, false), (&self.masked, true)] {
-                for variant in Variant::ALL {
-                    pass.set_pipeline(&pipelines[variant.index()]);
-                    let casts = |d: &&crate::scene::Draw| !d.blended && d.masked == masked && d.variant == variant;
-                    for draw in scene.draws.iter().filter(casts) {
-                        scene.draw(&mut pass, draw);
-                    }
-                }
-            }
+            scene.draw_all(&mut pass, &self.opaque, |draw| !draw.blended && !draw.masked);
+            scene.draw_all(&mut pass, &self.masked, |draw| draw.masked);
         }
         gpu.queue.submit([encoder.finish()]);
     }

@@ -1,0 +1,323 @@
+//! The picture, and how the mouse moves it.
+
+mod cameras;
+mod navigation;
+mod overlay;
+mod readout;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::document::Assigned;
+use burnish_core::material::preset::{self, Preset};
+use burnish_core::scene::Picked;
+use burnish_render::Frame;
+use eframe::egui::emath::GuiRounding;
+use eframe::egui::{self, Align2, Color32, Rect, Response, Role, Sense, WidgetInfo, pos2};
+use glam::UVec2;
+
+use super::{Context, DraggedPreset};
+use crate::window::commands::Command;
+use crate::window::request::Request;
+use crate::window::session::Session;
+use crate::window::stage::Shown;
+use navigation::{BUTTONS, Feel, Gesture, Wheel};
+
+pub use cameras::MOVE;
+pub use navigation::summary;
+
+/// Seconds after a change during which another is expected: only quick frames are drawn.
+const MOVING_SECS: f64 = 0.15;
+/// Grey of a picture that is not there; a middle one, so that tests see text over it.
+const FLAT: Color32 = Color32::from_gray(128);
+/// What the numbers under the pointer are.
+const READOUT_HELP: &str = "Scene-linear Rec.709 radiance under the pointer before exposure, and its luminance: in nit \
+                            where lights are given in candela and lux, else in the units of the HDRI.";
+
+/// The viewport.
+pub struct ViewportPanel {
+    gesture: Option<Gesture>,
+    /// Revision of the document that was drawn last, and when it changed.
+    revision: u64,
+    changed_secs: f64,
+    /// Width by height.
+    aspect: f32,
+    readout: readout::Readout,
+    boxes: overlay::Boxes,
+    /// What the user was told, so that it is told once.
+    told: Option<String>,
+}
+
+impl Default for ViewportPanel {
+    fn default() -> Self {
+        ViewportPanel {
+            gesture: None,
+            revision: 0,
+            changed_secs: f64::NEG_INFINITY,
+            aspect: 1.5,
+            readout: Default::default(),
+            boxes: Default::default(),
+            told: None,
+        }
+    }
+}
+
+impl ViewportPanel {
+    /// Shows the panel.
+    pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let scale = ui.pixels_per_point();
+        let rect = ui.available_rect_before_wrap().round_to_pixels(scale);
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        let text = summary_text(context.session);
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &text));
+        let size = (rect.size() * scale).round();
+        if size.x < 1.0 || size.y < 1.0 {
+            return;
+        }
+        self.aspect = size.x / size.y;
+        self.drag(&response, context, ui.input(|input| input.modifiers));
+        if response.contains_pointer() {
+            wheel(Wheel::read(&ui.input(|input| input.events.clone())), context);
+        }
+
+        let moving = self.is_moving(context.session);
+        let frame = frame_of(context.session, UVec2::new(size.x as u32, size.y as u32), moving);
+        self.click(&response, context, &frame);
+        self.drop_preset(&response, context, &frame);
+        // A click or a drop may have changed the scene: this frame shows it already.
+        let shown = context.stage.draw(context.session.scene(), &frame);
+        match shown.texture {
+            Some(texture) => {
+                let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                ui.painter().image(texture, rect, uv, Color32::WHITE);
+            }
+            None => _ = ui.painter().rect_filled(rect, 0.0, FLAT),
+        }
+        self.overlay_ui(ui, &response, context, &frame, &shown);
+        self.tell(&shown, context);
+        if moving {
+            ui.ctx().request_repaint_after_secs(MOVING_SECS as f32);
+        } else if !shown.settled {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// Moves the camera.
+    pub fn command(&mut self, command: Command, session: &mut Session) {
+        cameras::command(command, session, self.aspect);
+    }
+
+    /// True while a hand moves something: the document changed just now.
+    fn is_moving(&mut self, session: &Session) -> bool {
+        if self.revision != session.revision {
+            // The first picture of a document is no movement.
+            let opened = session.revision == 0;
+            self.revision = session.revision;
+            self.changed_secs = if opened { f64::NEG_INFINITY } else { session.now_secs };
+        }
+        (0.0..MOVING_SECS).contains(&(session.now_secs - self.changed_secs))
+    }
+
+    fn drag(&mut self, response: &Response, context: &mut Context<'_>, held: egui::Modifiers) {
+        for button in BUTTONS {
+            if response.drag_started_by(button) {
+                self.gesture = navigation::gesture(context.preferences.navigation, button, held);
+            }
+        }
+        let feel = Feel::new(context.preferences);
+        let by = response.drag_delta();
+        match self.gesture {
+            Some(_) if by == egui::Vec2::ZERO => {}
+            Some(Gesture::TurnLight) => context.session.edit("Rotate environment", "", |document| {
+                let turned = navigation::turned(document.environment.rotation_deg, by.x, feel);
+                document.environment.rotation_deg = turned;
+            }),
+            Some(gesture) => cameras::move_camera(context.session, |camera| {
+                navigation::drag_camera(camera, gesture, by, response.rect.height(), feel);
+            }),
+            None => {}
+        }
+        if response.drag_stopped() && self.gesture.take() == Some(Gesture::TurnLight) {
+            context.session.seal();
+        }
+    }
+
+    /// Selects what was clicked; a double click brings it into view.
+    fn click(&mut self, response: &Response, context: &mut Context<'_>, frame: &Frame) {
+        if !response.clicked() {
+            return;
+        }
+        let Some(pointer) = response.interact_pointer_pos() else { return };
+        let at = overlay::relative(response.rect, pointer);
+        let picked = context.stage.pick(context.session.scene(), frame, at);
+        let add = response.ctx.input(|input| input.modifiers.shift);
+        select(context.session, picked, add);
+        if response.double_clicked() && picked.is_some() {
+            self.command(Command::Frame, context.session);
+        }
+    }
+
+    /// Puts a dropped metal on the material under the pointer.
+    fn drop_preset(&mut self, response: &Response, context: &mut Context<'_>, frame: &Frame) {
+        let Some(dropped) = response.dnd_release_payload::<DraggedPreset>() else { return };
+        let Some(pointer) = response.ctx.pointer_latest_pos() else { return };
+        let at = overlay::relative(response.rect, pointer);
+        let picked = context.stage.pick(context.session.scene(), frame, at);
+        let Some(material) = picked.and_then(|picked| material_of(context.session, picked)) else {
+            context.requests.push(Request::Notice("There is no object there: drop the preset on one.".into()));
+            return;
+        };
+        let Some(metal) = preset(context.session, &dropped.0).cloned() else {
+            context.requests.push(Request::Error(format!("There is no preset `{}` any more.", dropped.0)));
+            return;
+        };
+        let name = context.session.document().materials.get(material).map(|entry| entry.name.clone());
+        context.session.edit("Metal", &name.unwrap_or_default(), |document| {
+            document.assign_preset(material, &metal, Assigned::KeepTextures);
+        });
+        select(context.session, picked, false);
+    }
+
+    fn overlay_ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        response: &Response,
+        context: &mut Context<'_>,
+        frame: &Frame,
+        shown: &Shown,
+    ) {
+        let rect = response.rect;
+        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.boxes);
+        let selected = overlay::selection_text(context.session);
+        if !selected.is_empty() {
+            overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");
+        }
+        let pointer = response.hover_pos().filter(|_| shown.texture.is_some() && self.gesture.is_none());
+        match pointer {
+            Some(pointer) if !frame.moving => {
+                let place = (pointer, overlay::relative(rect, pointer));
+                let picture = (context.session.revision, shown.settled);
+                match self.readout.update(context.stage, place, picture, context.session.now_secs) {
+                    Ok(Some(radiance)) => {
+                        let text = readout::text(radiance);
+                        overlay::line_ui(ui, rect, Align2::LEFT_BOTTOM, &text, READOUT_HELP);
+                    }
+                    Ok(None) => {}
+                    Err(secs) => ui.ctx().request_repaint_after_secs(secs as f32),
+                }
+            }
+            _ => self.readout.clear(),
+        }
+        if let Some(message) = &shown.message {
+            overlay::message_ui(ui, rect, message);
+        }
+    }
+
+    /// Says a fault once, not in every frame.
+    fn tell(&mut self, shown: &Shown, context: &mut Context<'_>) {
+        if shown.lost {
+            context.requests.push(Request::WriteRecovery);
+        }
+        if self.told != shown.message {
+            if let Some(message) = &shown.message {
+                context.requests.push(Request::Error(message.clone()));
+            }
+            self.told.clone_from(&shown.message);
+        }
+    }
+}
+
+/// A metal that comes with the program or with the document.
+fn preset<'a>(session: &'a Session, id: &str) -> Option<&'a Preset> {
+    let own = session.document().presets.iter().map(|metal| metal.as_ref());
+    own.chain(preset::library()).find(|metal| metal.id == id)
+}
+
+/// What the picture is of, for those who do not see it.
+fn summary_text(session: &Session) -> String {
+    let shown = session.scene().instances.iter().filter(|instance| instance.visible).count();
+    format!("Viewport: {}, {shown} {}", session.title(), if shown == 1 { "object" } else { "objects" })
+}
+
+/// What to draw.
+fn frame_of(session: &Session, size: UVec2, moving: bool) -> Frame {
+    let document = session.document();
+    Frame {
+        size,
+        camera: document.view.camera.camera(),
+        settings: document.lighting.settings(),
+        tone: document.view.tone.parse::<ToneMap>().unwrap_or_default(),
+        exposure_ev: document.view.exposure_ev as f32,
+        moving,
+    }
+}
+
+/// Zooms, or exposes with Shift.
+fn wheel(wheel: Wheel, context: &mut Context<'_>) {
+    let feel = Feel::new(context.preferences);
+    let factor = wheel.distance_factor(feel);
+    if factor != 1.0 {
+        cameras::move_camera(context.session, |camera| camera.zoom(factor));
+    }
+    if wheel.exposure != 0.0 {
+        context.session.edit("Exposure", "", |document| {
+            let ev = document.view.exposure_ev + navigation::EV_PER_NOTCH * wheel.exposure;
+            document.view.exposure_ev = ev.clamp(-16.0, 16.0);
+        });
+    }
+}
+
+/// Selects what was picked, or adds it; picking nothing deselects.
+fn select(session: &mut Session, picked: Option<Picked>, add: bool) {
+    let key = picked.and_then(|picked| session.resolved().object_keys.get(picked.instance).cloned());
+    let material = picked.and_then(|picked| material_of(session, picked));
+    let objects = &mut session.selection.objects;
+    match key {
+        Some(key) if add && objects.contains(&key) => objects.retain(|other| *other != key),
+        Some(key) if add => objects.push(key),
+        Some(key) => *objects = vec![key],
+        None if add => {}
+        None => objects.clear(),
+    }
+    if let Some(material) = material {
+        session.selection.material = material;
+    }
+}
+
+/// The document's material of an instance.
+fn material_of(session: &Session, picked: Picked) -> Option<usize> {
+    let material = session.scene().instances.get(picked.instance)?.material;
+    (material < session.document().materials.len()).then_some(material)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burnish_core::document;
+
+    #[test]
+    fn a_pick_selects_shift_adds_and_nothing_deselects() {
+        let mut session = Session::new(document::open("gallery:workbench").unwrap(), None);
+        let keys = session.resolved().object_keys.clone();
+        let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO });
+        select(&mut session, at(0), false);
+        assert_eq!(session.selection.objects, keys[..1]);
+        assert_eq!(session.selection.material, session.scene().instances[0].material);
+        select(&mut session, at(1), true);
+        assert_eq!(session.selection.objects, keys[..2]);
+        select(&mut session, at(0), true);
+        assert_eq!(session.selection.objects, keys[1..2]);
+        select(&mut session, None, true);
+        assert_eq!(session.selection.objects.len(), 1);
+        select(&mut session, None, false);
+        assert!(session.selection.objects.is_empty());
+    }
+
+    #[test]
+    fn the_picture_says_what_it_shows() {
+        let mut session = Session::new(document::open("gallery:workbench").unwrap(), None);
+        let all = session.scene().instances.len();
+        assert_eq!(summary_text(&session), format!("Viewport: workbench, {all} objects"));
+        let key = session.resolved().object_keys[0].clone();
+        session.edit("Hide", "", |document| document.edit_object(&key, |object| object.hidden = true));
+        assert!(summary_text(&session).contains(&format!("{} object", all - 1)));
+    }
+}

@@ -1,0 +1,171 @@
+//! What is drawn over the picture: names and corners of the selected objects, numbers, messages.
+
+use std::sync::Arc;
+
+use burnish_core::scene::{Bounds, Camera, Instance, Mesh, Projection};
+use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use glam::{Affine3A, Vec3};
+
+use crate::window::session::Session;
+
+/// Length of the marks at the corners of a selected object, points.
+const MARK: f32 = 14.0;
+/// Behind text over the picture.
+const SHADE: Color32 = Color32::from_black_alpha(150);
+
+/// Boxes of meshes that were selected, so that a frame does not visit all their vertices.
+#[derive(Default)]
+pub struct Boxes(Vec<(Arc<Mesh>, Bounds)>);
+
+impl Boxes {
+    fn of(&mut self, mesh: &Arc<Mesh>) -> Bounds {
+        if let Some((_, bounds)) = self.0.iter().find(|(known, _)| Arc::ptr_eq(known, mesh)) {
+            return *bounds;
+        }
+        let bounds = mesh.positions.iter().fold(Bounds::EMPTY, |bounds, position| bounds.including(*position));
+        self.0.push((mesh.clone(), bounds));
+        bounds
+    }
+}
+
+/// Selected objects with their place in the scene.
+fn selected(session: &Session) -> Vec<&Instance> {
+    let keys = session.resolved().object_keys.iter();
+    let pairs = keys.zip(&session.scene().instances);
+    pairs.filter(|(key, _)| session.selection.objects.contains(key)).map(|(_, instance)| instance).collect()
+}
+
+/// Marks the corners of the selected objects.
+pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camera, boxes: &mut Boxes) {
+    let scene = session.scene();
+    let chosen = selected(session);
+    if chosen.is_empty() {
+        boxes.0.clear();
+    }
+    let painter = ui.painter_at(rect);
+    let color = ui.visuals().selection.bg_fill.gamma_multiply(1.6);
+    for instance in chosen.into_iter().filter(|instance| instance.visible) {
+        let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
+        let Some(outline) = project_box(boxes.of(mesh), instance.world_from_local, camera, rect) else { continue };
+        for (corner, x, y) in [
+            (outline.left_top(), 1.0, 1.0),
+            (outline.right_top(), -1.0, 1.0),
+            (outline.left_bottom(), 1.0, -1.0),
+            (outline.right_bottom(), -1.0, -1.0),
+        ] {
+            let mark = vec2(MARK.min(0.4 * outline.width()) * x, MARK.min(0.4 * outline.height()) * y);
+            for (stroke, end) in [(vec2(mark.x, 0.0), corner), (vec2(0.0, mark.y), corner)] {
+                // Dark below light: to be seen on any picture.
+                painter.line_segment([end, end + stroke], Stroke::new(4.0, SHADE));
+                painter.line_segment([end, end + stroke], Stroke::new(2.0, color));
+            }
+        }
+    }
+}
+
+/// The rectangle around a box as the camera sees it; `None` where a corner is behind the camera.
+fn project_box(bounds: Bounds, world_from_local: Affine3A, camera: &Camera, rect: Rect) -> Option<Rect> {
+    if bounds.is_empty() {
+        return None;
+    }
+    let mut outline = Rect::NOTHING;
+    for corner in 0..8 {
+        let pick = Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32);
+        let local = bounds.min + pick * (bounds.max - bounds.min);
+        outline.extend_with(project(world_from_local.transform_point3(local), camera, rect)?);
+    }
+    Some(outline.expand(3.0))
+}
+
+/// Where a world position is seen; `None` behind the camera.
+fn project(world: Vec3, camera: &Camera, rect: Rect) -> Option<Pos2> {
+    let view = camera.world_from_view.inverse().transform_point3(world);
+    let half_height = match camera.projection {
+        Projection::Perspective { yfov, near } => {
+            if -view.z <= near {
+                return None;
+            }
+            -view.z * (0.5 * yfov).tan()
+        }
+        Projection::Orthographic { ymag, .. } => ymag,
+    };
+    let scale = 0.5 * rect.height() / half_height;
+    let place = rect.center() + Vec2::new(view.x * scale, -view.y * scale);
+    place.is_finite().then_some(place)
+}
+
+/// What is selected, in words; empty without a selection.
+pub fn selection_text(session: &Session) -> String {
+    let chosen = selected(session);
+    let [first, rest @ ..] = chosen.as_slice() else { return String::new() };
+    let material = session.scene().materials.get(first.material).map_or("", |material| material.name.as_str());
+    let name = if first.name.is_empty() { "unnamed" } else { &first.name };
+    match rest.len() {
+        0 => format!("{name}: {material}"),
+        more => format!("{name} and {more} more"),
+    }
+}
+
+/// A line of text in a corner of the picture.
+pub fn line_ui(ui: &mut egui::Ui, rect: Rect, corner: Align2, text: &str, hover: &str) {
+    let font = FontId::proportional(12.5);
+    let galley = ui.painter().layout_no_wrap(text.into(), font, Color32::from_gray(235));
+    let size = galley.size() + vec2(12.0, 6.0);
+    let place = corner.align_size_within_rect(size, rect.shrink(8.0));
+    ui.painter().rect_filled(place, 4.0, SHADE);
+    let label = egui::Label::new(egui::RichText::new(text).size(12.5).color(Color32::from_gray(235)));
+    let response = ui.put(place, label.selectable(false).truncate());
+    if !hover.is_empty() {
+        response.on_hover_text(hover);
+    }
+}
+
+/// A message in the middle of the picture.
+pub fn message_ui(ui: &mut egui::Ui, rect: Rect, text: &str) {
+    let width = (rect.width() - 40.0).clamp(40.0, 520.0);
+    let font = FontId::proportional(15.0);
+    let galley = ui.painter().layout(text.into(), font, Color32::from_gray(235), width);
+    let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), rect);
+    ui.painter().rect_filled(place.expand(12.0), 6.0, Color32::from_black_alpha(200));
+    let label = egui::Label::new(egui::RichText::new(text).size(15.0).color(Color32::from_gray(235)));
+    ui.put(place.expand2(vec2(2.0, 0.0)), label.selectable(false).wrap());
+}
+
+/// The middle of the picture in words of egui.
+pub fn relative(rect: Rect, pointer: Pos2) -> glam::Vec2 {
+    let size = rect.size().max(pos2(1.0, 1.0).to_vec2());
+    let at = (pointer - rect.min) / size;
+    glam::Vec2::new(at.x, at.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_seen_where_its_ray_goes_through_the_picture() {
+        let rect = Rect::from_min_size(pos2(30.0, 50.0), vec2(600.0, 400.0));
+        let mut perspective = Camera::look_at("c", Vec3::new(1.0, 2.0, 4.0), Vec3::ZERO, 0.7);
+        let orthographic = Projection::Orthographic { ymag: 2.0, near: -10.0, far: 10.0 };
+        for projection in [perspective.projection, orthographic] {
+            perspective.projection = projection;
+            for at in [glam::Vec2::new(0.5, 0.5), glam::Vec2::new(0.1, 0.8)] {
+                let ray = perspective.ray(at, rect.width() / rect.height());
+                let seen = project(ray.origin + 3.0 * ray.direction, &perspective, rect).unwrap();
+                assert!((relative(rect, seen) - at).length() < 1e-4, "{at} {seen:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_that_reaches_behind_the_camera_has_no_outline() {
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(100.0, 100.0));
+        let camera = Camera::look_at("c", Vec3::new(0.0, 0.0, 0.5), Vec3::ZERO, 0.7);
+        let unit = Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE };
+        assert_eq!(project_box(unit, Affine3A::IDENTITY, &camera, rect), None);
+        let far = Camera::look_at("c", Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, 0.7);
+        let outline = project_box(unit, Affine3A::IDENTITY, &far, rect).unwrap();
+        assert!(outline.contains(rect.center()) && rect.contains_rect(outline));
+        assert_eq!(project_box(Bounds::EMPTY, Affine3A::IDENTITY, &far, rect), None);
+    }
+}

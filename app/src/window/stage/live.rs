@@ -1,0 +1,167 @@
+//! A picture drawn on the window's own device and shown without a copy.
+
+use std::sync::Arc;
+
+use burnish_core::scene::{Picked, Scene};
+use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, RenderError, Viewport};
+use eframe::egui::TextureId;
+use eframe::egui_wgpu::RenderState;
+use eframe::wgpu;
+use glam::{Vec2, Vec3};
+
+use super::{LossLog, Shown, Status};
+
+/// A viewport on the window's device.
+pub struct Live {
+    render: RenderState,
+    viewport: Viewport,
+    /// The view that egui knows, and as what.
+    texture: Option<(wgpu::TextureView, TextureId)>,
+    status: Status,
+    losses: LossLog,
+    condition: Condition,
+    inject_loss: bool,
+}
+
+/// Whether there is something to draw with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Condition {
+    Sound,
+    /// The window's device is gone.
+    Restart,
+    /// The device failed too often.
+    GivenUp,
+}
+
+impl Live {
+    /// A viewport on the device of a window; `gpu` is that device.
+    pub fn new(render: RenderState, gpu: &Gpu, losses: LossLog) -> Live {
+        let report = gpu.report();
+        let status = Status {
+            drawn: Drawn { settled: true, ..Drawn::default() },
+            adapter: format!("{} ({})", report.name, report.backend),
+            software: gpu.is_software(),
+            ..Status::default()
+        };
+        Live {
+            viewport: Viewport::new(gpu),
+            render,
+            texture: None,
+            status,
+            losses,
+            condition: Condition::Sound,
+            inject_loss: false,
+        }
+    }
+
+    /// Draws what is due.
+    pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        match self.condition {
+            Condition::Sound => {}
+            Condition::Restart => return self.shown(Some("The graphics device was lost.".into()), false),
+            Condition::GivenUp => return self.shown(Some(LossLog::GIVEN_UP.into()), false),
+        }
+        match self.try_draw(scene, frame) {
+            Ok(()) => self.shown(None, false),
+            Err(RenderError::Gpu(error)) => self.recover(&error),
+            Err(error) => self.shown(Some(error.to_string()), false),
+        }
+    }
+
+    fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
+        if std::mem::take(&mut self.inject_loss) {
+            return Err(GpuError::Failed("a loss for trial".into()).into());
+        }
+        self.viewport.set_scene(scene)?;
+        let before = self.status.drawn.frames;
+        let drawn = self.viewport.draw(frame)?;
+        // Frames of a picture at rest are drawn in parts: only a quick one is a measure.
+        if drawn.frames == 1 && (frame.moving || before != 1) {
+            self.status.frame_ms = drawn.milliseconds;
+        }
+        self.status.size = frame.size;
+        self.status.drawn = drawn;
+        self.show();
+        Ok(())
+    }
+
+    /// Makes egui know the picture.
+    fn show(&mut self) {
+        let Some(view) = self.viewport.output() else { return };
+        let filter = wgpu::FilterMode::Linear;
+        let mut renderer = self.render.renderer.write();
+        match &mut self.texture {
+            Some((known, _)) if known == view => {}
+            Some((known, id)) => {
+                renderer.update_egui_texture_from_wgpu_texture(&self.render.device, view, filter, *id);
+                *known = view.clone();
+            }
+            None => {
+                let id = renderer.register_native_texture(&self.render.device, view, filter);
+                self.texture = Some((view.clone(), id));
+            }
+        }
+    }
+
+    fn shown(&self, message: Option<String>, lost: bool) -> Shown {
+        Shown {
+            texture: self.texture.as_ref().filter(|_| self.condition == Condition::Sound).map(|(_, id)| *id),
+            settled: message.is_some() || self.status.drawn.settled,
+            message,
+            lost,
+        }
+    }
+
+    /// After a failure: a new view where the device lives on, else the wish for a new program.
+    fn recover(&mut self, error: &GpuError) -> Shown {
+        let again = self.losses.note_now();
+        if again && is_loss(error) {
+            self.condition = Condition::Restart;
+        } else if again {
+            // An error that no scope caught sticks to the device's first owner; the device itself draws on.
+            let gpu = Gpu::from_parts(&self.render.adapter, self.render.device.clone(), self.render.queue.clone());
+            self.viewport = Viewport::new(&gpu);
+        } else {
+            self.condition = Condition::GivenUp;
+        }
+        self.status.drawn = Drawn::default();
+        let message = if again { format!("{error}. The picture is made anew.") } else { LossLog::GIVEN_UP.into() };
+        Shown { settled: !again, ..self.shown(Some(message), true) }
+    }
+
+    /// The surface under a point of the picture.
+    pub fn pick(&mut self, at: Vec2) -> Option<Picked> {
+        // An error comes up again, and is told, when the next frame is drawn.
+        self.viewport.pick(at).ok().flatten()
+    }
+
+    /// Radiance under a point of the picture.
+    pub fn radiance(&mut self, at: Vec2) -> Option<Vec3> {
+        self.viewport.radiance(at).ok().flatten()
+    }
+
+    /// What there is to know about the picture.
+    pub fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// The compiled passes.
+    pub fn passes(&self) -> &Arc<Passes> {
+        self.viewport.passes()
+    }
+
+    /// Losses to tell the next run of the program about, when there must be one.
+    pub fn wants_restart(&self) -> Option<LossLog> {
+        (self.condition == Condition::Restart).then(|| self.losses.clone())
+    }
+
+    /// Makes the next frame find its device lost.
+    pub fn inject_loss(&mut self) {
+        self.inject_loss = true;
+    }
+}
+
+/// True where the device itself is gone, not only a call to it.
+fn is_loss(error: &GpuError) -> bool {
+    matches!(error, GpuError::Failed(message) if message.starts_with("device lost") || message.contains("device is lost"))
+}

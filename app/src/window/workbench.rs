@@ -69,6 +69,11 @@ impl Workbench {
         &mut self.session
     }
 
+    /// Asks for something as a panel would; it is fulfilled in the next frame.
+    pub fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
     /// A file is being read or written by another thread.
     pub fn is_busy(&self) -> bool {
         self.files.is_busy()

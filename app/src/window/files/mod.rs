@@ -11,6 +11,8 @@ mod notices;
 mod recovery;
 mod save;
 mod store;
+#[cfg(test)]
+mod tests;
 mod watch;
 
 use std::path::{Path, PathBuf};

@@ -105,7 +105,8 @@ fn panel(name: &str) -> Result<Pane, String> {
 fn open(scene: &str, err: &mut dyn Write) -> Result<Session, Failure> {
     let opened = document::open(scene).map_err(|e| Failure::input(Path::new(scene), e))?;
     if !opened.missing.is_empty() {
-        let line = |missing: &document::Missing| format!("{}: {}; relink it in the window", missing.path, missing.reason);
+        let line =
+            |missing: &document::Missing| format!("{}: {}; relink it in the window", missing.path, missing.reason);
         return Err(Failure { exit: Exit::Input, messages: opened.missing.iter().map(line).collect() });
     }
     for notice in &opened.notices {
@@ -164,8 +165,9 @@ impl EmptyFolder {
         static COUNT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
         let number = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("burnish-snapshot-{}-{number}", std::process::id()));
-        std::fs::create_dir_all(&path)
-            .map_err(|e| format!("{}: cannot be created ({e}); set TMPDIR to a folder that can be written", path.display()))?;
+        std::fs::create_dir_all(&path).map_err(|e| {
+            format!("{}: cannot be created ({e}); set TMPDIR to a folder that can be written", path.display())
+        })?;
         Ok(EmptyFolder(path))
     }
 }

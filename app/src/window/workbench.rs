@@ -51,10 +51,9 @@ pub struct Workbench {
 impl Workbench {
     /// The workbench as it is at first.
     pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
-        let scene = options.scene.clone().unwrap_or_else(|| document::DEFAULT_SCENE.into());
-        let opened =
-            document::open(&scene).unwrap_or_else(|_| document::reload(Default::default(), &Default::default()));
-        let preferences = Preferences::default();
+        let opened = document::reload(Default::default(), &Default::default());
+        let opened = document::open(document::DEFAULT_SCENE).unwrap_or(opened);
+        let (files, preferences) = Files::new(&options, &stage, ctx);
         theme::install(ctx);
         theme::apply(ctx, &preferences);
         Workbench {
@@ -64,10 +63,10 @@ impl Workbench {
             preferences,
             stage,
             panels: Panels::default(),
-            start: options.scene.is_none().then(StartPage::default),
+            start: (options.scene.is_none() && !options.recover).then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
-            files: Files::default(),
+            files,
             toasts: Toasts::default(),
             palette: None,
             shortcut_page: false,
@@ -84,9 +83,14 @@ impl Workbench {
         &mut self.session
     }
 
+    /// Asks for something as a panel would; it is fulfilled in the next frame.
+    pub fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
     /// A file is being read or written by another thread.
     pub fn is_busy(&self) -> bool {
-        false
+        self.files.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -130,22 +134,31 @@ impl Workbench {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
-        self.shortcuts(ui);
+        if !self.files.is_modal() {
+            self.shortcuts(ui);
+        }
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
         let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
         let mut context = Context { session, preferences, stage, requests };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
+        if start.is_none() {
+            files.banner_ui(ui, &mut context);
+        }
         let middle = ui.available_rect_before_wrap();
         let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
-            Some(page) => page.ui(ui, &mut context),
+            Some(page) => {
+                if page.ui(ui, &mut context, files.is_modal()) {
+                    *start = None;
+                }
+            }
             None => {
                 let mut docked = Docked { panels, context: &mut context, rearranged: false };
                 tree.ui(&mut docked, ui);
                 self.rearranged |= docked.rearranged;
             }
         });
-        files.frame(ui, session, preferences, requests);
+        files.frame(ui, &mut context);
         self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());
@@ -182,7 +195,12 @@ impl Workbench {
             Request::Command(command) => self.command(command, ctx),
             Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
             Request::Error(text) => self.toasts.error(text, self.session.now_secs),
-            about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
+            about_files => {
+                if !matches!(about_files, Request::PickFile(_) | Request::WriteRecovery) {
+                    self.start = None;
+                }
+                self.files.fulfil(about_files, &mut self.session, ctx);
+            }
         }
         // An answer is shown in the next frame.
         if !self.requests.is_empty() {
@@ -223,7 +241,8 @@ impl Workbench {
             | Command::Save
             | Command::SaveAs
             | Command::SaveImage
-            | Command::Quit => self.files.command(command, &mut self.session, &mut self.preferences, ctx),
+            | Command::Notices
+            | Command::Quit => self.files.command(command, &mut self.session, &self.stage, ctx),
             Command::Frame
             | Command::FrameAll
             | Command::ViewFront

@@ -47,7 +47,11 @@ fn free_of_the_gpu() -> Vec<Trial> {
 fn with_an_adapter() -> Vec<Trial> {
     vec![
         trial("doctor finds the adapter", &[Need::Gpu], doctor_finds_the_adapter),
-        trial("render writes a png of the asked size that shows the scene", &[Need::Gpu], rendering::render_writes_a_png),
+        trial(
+            "render writes a png of the asked size that shows the scene",
+            &[Need::Gpu],
+            rendering::render_writes_a_png,
+        ),
         trial(
             "an exr holds the radiance, and a png without tone map shows it times 2^EV",
             &[Need::Gpu],

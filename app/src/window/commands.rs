@@ -62,10 +62,10 @@ pub enum Command {
     Orthographic,
     /// Keeps the point of view.
     SaveCamera,
-    /// Shows a panel or puts it away.
-    Panel(Pane),
     /// What importers said.
     Notices,
+    /// Shows a panel or puts it away.
+    Panel(Pane),
     /// The palette.
     Palette,
     /// The shortcut page.

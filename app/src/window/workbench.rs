@@ -51,8 +51,13 @@ pub struct Workbench {
 impl Workbench {
     /// The workbench as it is at first.
     pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
-        let opened = document::reload(Default::default(), &Default::default());
-        let opened = document::open(document::DEFAULT_SCENE).unwrap_or(opened);
+        let start = options.scene.is_none() && !options.recover;
+        // Scenes made by code are there at once; files are read by another thread while the default one is shown.
+        let scene = options.scene.as_deref().filter(|scene| scene.starts_with("gallery:"));
+        let made = scene.and_then(|scene| document::open(scene).ok());
+        let options = Options { scene: options.scene.filter(|_| made.is_none()), ..options };
+        let opened = made.or_else(|| document::open(document::DEFAULT_SCENE).ok());
+        let opened = opened.unwrap_or_else(|| document::reload(Default::default(), &Default::default()));
         let (files, preferences) = Files::new(&options, &stage, ctx);
         theme::install(ctx);
         theme::apply(ctx, &preferences);
@@ -63,7 +68,7 @@ impl Workbench {
             preferences,
             stage,
             panels: Panels::default(),
-            start: (options.scene.is_none() && !options.recover).then(StartPage::default),
+            start: start.then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
             files,
@@ -134,9 +139,7 @@ impl Workbench {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
-        if !self.files.is_modal() {
-            self.shortcuts(ui);
-        }
+        self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
         let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
         let mut context = Context { session, preferences, stage, requests };

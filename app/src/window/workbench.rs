@@ -120,6 +120,14 @@ impl Workbench {
         self.rearranged = true;
     }
 
+    /// Puts a panel away.
+    pub fn hide_panel(&mut self, pane: Pane) {
+        if layout::is_shown(&self.tree, pane) {
+            layout::toggle(&mut self.tree, pane);
+            self.rearranged = true;
+        }
+    }
+
     /// Messages that are shown.
     pub fn messages(&self) -> impl Iterator<Item = &str> {
         self.toasts.texts()

@@ -19,6 +19,13 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// Fails where something looked otherwise.
+fn judge(bench: &mut Bench) {
+    let faults: Vec<String> =
+        bench.window.take_snapshot_results().into_inner().iter().map(ToString::to_string).collect();
+    assert!(faults.is_empty(), "{}\nlook at the .diff.png files; UPDATE_SNAPSHOTS=1 accepts", faults.join("\n"));
+}
+
 fn look(bench: &mut Bench, name: &str) {
     bench.window.run_ok();
     let folder = repository().join("tests/tests/ui/snapshots");
@@ -42,6 +49,7 @@ fn every_panel() {
         bench.workbench().show_panel(shown);
         look(&mut bench, &format!("panel_{}", shown.title().to_lowercase()));
     }
+    judge(&mut bench);
 }
 
 fn whole_window() {
@@ -51,6 +59,7 @@ fn whole_window() {
         bench.workbench().preferences_mut().dark = Some(dark);
         look(&mut bench, name);
     }
+    judge(&mut bench);
 }
 
 fn pages() {
@@ -66,6 +75,7 @@ fn pages() {
     bench.window.run_steps(3);
     bench.workbench().ask(Request::Command(Command::Shortcuts));
     look(&mut bench, "shortcuts");
+    judge(&mut bench);
 }
 
 /// Also that every entry has a menu: what is in no menu is found by nobody.

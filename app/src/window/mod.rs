@@ -7,12 +7,15 @@
 mod commands;
 mod edits;
 mod files;
+mod icon;
 mod native;
 mod panel;
 mod preferences;
 mod request;
 mod session;
 mod stage;
+mod thumbnails;
+mod user_presets;
 mod widget;
 mod workbench;
 

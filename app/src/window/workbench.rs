@@ -8,11 +8,13 @@ use egui_tiles::{Container, Linear, LinearDir, Tiles, Tree};
 
 use super::commands::{Command, Menu, TABLE};
 use super::files::Files;
-use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine};
+use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
+use super::thumbnails::{self, Thumbnails};
+use super::user_presets::{self, UserPresets};
 
 /// How the window starts.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +40,8 @@ pub struct Workbench {
     status: StatusLine,
     requests: Requests,
     files: Files,
+    own: UserPresets,
+    thumbnails: Thumbnails,
 }
 
 impl Workbench {
@@ -56,6 +60,8 @@ impl Workbench {
             status: StatusLine::default(),
             requests: Requests::new(),
             files: Files::default(),
+            own: UserPresets::new(user_presets::folder(options.data_folder.as_deref())),
+            thumbnails: Thumbnails::new(thumbnails::folder(options.data_folder.as_deref())),
         }
     }
 
@@ -84,8 +90,15 @@ impl Workbench {
         self.session.now_secs = ui.input(|input| input.time);
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files } = self;
-        let mut context = Context { session, preferences, stage, requests };
+        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, own, thumbnails } =
+            self;
+        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes()) {
+            requests.push(Request::Error(fault));
+        }
+        for preset in own.frame(ui.ctx(), requests) {
+            requests.push(Request::AssignPreset { preset, materials: session.selected_materials() });
+        }
+        let mut context = Context { session, preferences, stage, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         egui::CentralPanel::no_frame().show(ui, |ui| match start {
             Some(page) => page.ui(ui, &mut context),
@@ -101,6 +114,12 @@ impl Workbench {
     fn fulfil(&mut self, request: Request, ctx: &egui::Context) {
         match request {
             Request::Command(command) => self.command(command, ctx),
+            Request::ImportPreset(path) => self.own.import(path),
+            Request::AssignPreset { preset, materials } => {
+                if let Err(fault) = assign(&mut self.session, &self.own, &preset, &materials) {
+                    self.requests.push(Request::Error(fault));
+                }
+            }
             Request::Notice(_) | Request::Error(_) => {}
             about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
         }

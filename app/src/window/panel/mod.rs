@@ -17,11 +17,13 @@ use super::preferences::Preferences;
 use super::request::Requests;
 use super::session::Session;
 use super::stage::Stage;
+use super::thumbnails::Thumbnails;
+use super::user_presets::UserPresets;
 
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
 pub use material::MaterialPanel;
-pub use presets::PresetsPanel;
+pub use presets::{PresetsPanel, assign};
 pub use reflectance::ReflectancePanel;
 pub use scene_tree::SceneTree;
 pub use start::StartPage;
@@ -38,9 +40,15 @@ pub struct Context<'a> {
     pub stage: &'a mut Stage,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
+    /// The user's presets.
+    pub own: &'a mut UserPresets,
+    /// Pictures of presets.
+    pub thumbnails: &'a mut Thumbnails,
 }
 
-/// What is dragged out of the preset browser: the id of a preset.
+/// What is dragged out of the preset browser: the key of a preset, for [`Request::AssignPreset`].
+///
+/// [`Request::AssignPreset`]: super::request::Request::AssignPreset
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DraggedPreset(pub String);
 
@@ -128,7 +136,8 @@ impl egui_tiles::Behavior<Pane> for Docked<'_, '_> {
     fn pane_ui(&mut self, ui: &mut egui::Ui, _tile: egui_tiles::TileId, pane: &mut Pane) -> egui_tiles::UiResponse {
         let margin = if *pane == Pane::Viewport { 0 } else { 6 };
         egui::Frame::new().inner_margin(margin).show(ui, |ui| {
-            if *pane == Pane::Viewport {
+            // The browser scrolls its balls alone.
+            if matches!(pane, Pane::Viewport | Pane::Presets) {
                 self.panels.ui(*pane, ui, self.context);
             } else {
                 egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -61,7 +61,7 @@ fn reset(painter: &Painter, center: Pos2, radius: f32, color: Color32) {
 fn star(painter: &Painter, center: Pos2, radius: f32, fill: Color32, stroke: Stroke) {
     let point = |i: usize| {
         let angle = -0.5 * PI + TAU * i as f32 / 10.0;
-        let length = if i % 2 == 0 { 1.25 * radius } else { 0.5 * radius };
+        let length = if i.is_multiple_of(2) { 1.25 * radius } else { 0.5 * radius };
         center + length * vec2(angle.cos(), angle.sin())
     };
     if fill != Color32::TRANSPARENT {

@@ -244,7 +244,8 @@ fn color_ui(
         }
         edit.ended = true;
     }
-    ui.data_mut(|data| match field.has_focus() && (buffer.is_some() || field.changed()) {
+    let typing = field.has_focus() && (buffer.is_some() || field.changed());
+    ui.data_mut(|data| match typing {
         true => _ = data.insert_temp(id, text),
         false => data.remove::<String>(id),
     });

@@ -6,7 +6,7 @@ use burnish_core::material::{Material, Reflectance};
 use burnish_core::surface::dielectric;
 use burnish_core::surface::fresnel::schlick;
 use eframe::egui::{self, Color32, WidgetInfo};
-use egui_plot::{GridMark, Legend, Line, LineStyle, Plot, PlotPoint, Text};
+use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, Text};
 use glam::{DVec3, Vec3};
 
 use super::Context;
@@ -15,7 +15,7 @@ use super::presets::title;
 /// Degrees that are sampled, and the last of them.
 const STEPS: usize = 90;
 /// Room for the numbers and the notes around the plot, points.
-const AROUND: f32 = 74.0;
+const AROUND: f32 = 50.0;
 
 /// R, G and B with the colours of Okabe and Ito, told apart without red and green as well.
 const CHANNELS: [(&str, Color32); 3] =
@@ -93,7 +93,7 @@ fn caption(document: &Document, index: usize, material: &Material, metal: Option
     match metal {
         Some(metal) => {
             let form = form.or_else(|| document.lighting.settings().text("fresnel")).unwrap_or_default();
-            format!("{}: {}, as rendered ({form}) and exact", material.name, title(metal))
+            format!("{}: {}; solid as rendered ({form}), dashed exact", material.name, title(metal))
         }
         None => format!("{}: from its base color and index of refraction (glTF)", material.name),
     }
@@ -104,15 +104,14 @@ fn plot_ui(ui: &mut egui::Ui, height: f32, used: &Curve, exact: Option<&Curve>) 
     let id = ui.scope_id().with("reflectance");
     let label = |at: &egui_plot::HoverPosition<'_>| match at {
         egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
-            Some(format!("{plot_name}\n{:.0} deg: {:.3}", position.x, position.y))
+            Some(format!("{plot_name}\n{:.0}°: {:.3}", position.x, position.y))
         }
         egui_plot::HoverPosition::Elsewhere { .. } => None,
     };
     let shown = Plot::new("reflectance")
         .id(id)
         .height(height)
-        .legend(Legend::default().follow_insertion_order(true).position(egui_plot::Corner::LeftBottom))
-        .default_x_bounds(0.0, STEPS as f64)
+        .default_x_bounds(-1.0, STEPS as f64 + 4.0)
         .default_y_bounds(0.0, 1.02)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -121,8 +120,7 @@ fn plot_ui(ui: &mut egui::Ui, height: f32, used: &Curve, exact: Option<&Curve>) 
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
         .x_grid_spacer(|_| marks(90, &[30.0, 15.0]))
-        .x_axis_label("Angle, deg")
-        .y_axis_label("Reflectance")
+        .x_axis_formatter(|mark, _| format!("{:.0}°", mark.value))
         .label_formatter(label)
         .show(ui, |plot| {
             let curves = [("as rendered", Some(used), true), ("exact", exact, false)];
@@ -139,8 +137,10 @@ fn plot_ui(ui: &mut egui::Ui, height: f32, used: &Curve, exact: Option<&Curve>) 
             for (channel, (name, color)) in CHANNELS.into_iter().enumerate() {
                 // Beside one another, for curves of a grey metal lie on each other.
                 let degree = 4 + 5 * channel;
-                let at = PlotPoint::new(degree as f64, used.get(degree).map_or(0.0, |v| f64::from(v[channel])) + 0.035);
-                plot.text(Text::new("", at, egui::RichText::new(name).strong()).color(color).allow_hover(false));
+                let value = used.get(degree).map_or(0.0, |v| f64::from(v[channel]));
+                let beside = if value > 0.85 { -0.08 } else { 0.06 };
+                let at = PlotPoint::new(degree as f64, value + beside);
+                plot.text(Text::new("", at, name).color(color).allow_hover(false));
             }
             plot.pointer_coordinate().filter(|_| plot.response().hovered())
         });
@@ -168,7 +168,7 @@ fn readout_ui(ui: &mut egui::Ui, angle: Option<f64>, used: &Curve, exact: Option
     };
     let hover = "Reflectance of R, G and B (linear Rec.709 under D65) at this angle from the normal";
     egui::Grid::new("readout").num_columns(2).spacing([8.0, 1.0]).show(ui, |ui| {
-        ui.small(format!("{angle:.0} deg, as rendered")).on_hover_text(hover);
+        ui.small(format!("{angle:.0}° as rendered")).on_hover_text(hover);
         ui.monospace(egui::RichText::new(read(used)).small());
         ui.end_row();
         if let Some(exact) = exact {

@@ -29,6 +29,9 @@ impl MaterialPanel {
         }
         let MaterialPanel { header, textures } = self;
         let shown = ui.scope(|ui| {
+            // The scroll bar floats over what reaches the edge.
+            ui.set_max_width(ui.available_width() - 10.0);
+            ui.spacing_mut().indent = 12.0;
             header.ui(ui, context, index);
             ui.separator();
             metal::metal_ui(ui, context, index);

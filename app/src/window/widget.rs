@@ -244,6 +244,7 @@ fn color_ui(
         }
         edit.ended = true;
     }
+    // Asked before: inside, the context is locked.
     let typing = field.has_focus() && (buffer.is_some() || field.changed());
     ui.data_mut(|data| match typing {
         true => _ = data.insert_temp(id, text),

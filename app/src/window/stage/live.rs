@@ -20,6 +20,8 @@ pub struct Live {
     status: Status,
     losses: LossLog,
     condition: Condition,
+    /// The window was not shown yet.
+    first: bool,
     inject_loss: bool,
 }
 
@@ -50,12 +52,17 @@ impl Live {
             status,
             losses,
             condition: Condition::Sound,
+            first: true,
             inject_loss: false,
         }
     }
 
     /// Draws what is due.
     pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        if std::mem::take(&mut self.first) {
+            // The window appears at once, its picture when the shaders are compiled.
+            return Shown::default();
+        }
         match self.condition {
             Condition::Sound => {}
             Condition::Restart => return self.shown(Some("The graphics device was lost.".into()), false),
@@ -73,10 +80,9 @@ impl Live {
             return Err(GpuError::Failed("a loss for trial".into()).into());
         }
         self.viewport.set_scene(scene)?;
-        let before = self.status.drawn.frames;
         let drawn = self.viewport.draw(frame)?;
-        // Frames of a picture at rest are drawn in parts: only a quick one is a measure.
-        if drawn.frames == 1 && (frame.moving || before != 1) {
+        // Pictures at rest are drawn in parts, and a hand that holds still asks for nothing: neither is a measure.
+        if frame.moving && drawn.milliseconds > 0.5 || self.status.frame_ms == 0.0 {
             self.status.frame_ms = drawn.milliseconds;
         }
         self.status.size = frame.size;

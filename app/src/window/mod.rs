@@ -27,5 +27,5 @@ pub use panel::Pane;
 pub use preferences::Preferences;
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};
-pub use stage::{Live, LossLog, Shown, Stage, Status};
+pub use stage::{Live, LossLog, Shown, Stage, Status, Trial};
 pub use workbench::{Options, Workbench};

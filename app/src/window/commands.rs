@@ -306,6 +306,7 @@ impl Command {
                 | Command::ThemeDark
                 | Command::ResetLayout
                 | Command::Palette
+                | Command::Notices
                 | Command::Shortcuts
         )
     }

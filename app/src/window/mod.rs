@@ -9,6 +9,7 @@ mod edits;
 mod files;
 mod layout;
 mod native;
+pub mod offscreen;
 mod palette;
 mod panel;
 mod preferences;

@@ -98,6 +98,12 @@ impl Workbench {
         self.files.is_busy()
     }
 
+    /// Goes over to another session, away from the start page.
+    pub fn set_session(&mut self, session: Session) {
+        self.session = session;
+        self.start = None;
+    }
+
     /// The user's choices.
     pub fn preferences(&self) -> &Preferences {
         &self.preferences
@@ -142,7 +148,8 @@ impl Workbench {
             files.banner_ui(ui, &mut context);
         }
         let middle = ui.available_rect_before_wrap();
-        egui::CentralPanel::no_frame().show(ui, |ui| match start {
+        let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
             Some(page) => {
                 if page.ui(ui, &mut context, files.is_modal()) {
                     *start = None;

@@ -19,7 +19,6 @@ use burnish_core::picture::Picture;
 use burnish_core::scene::{Camera, Instance, Scene, gallery};
 use burnish_render::pass::environment::downsampled;
 use burnish_render::{Passes, Renderer, View};
-use directories::ProjectDirs;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
 use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
 
@@ -36,13 +35,6 @@ const RADIUS: f32 = 0.97;
 const MASK: f32 = 0.94;
 /// Seconds without input after which balls are drawn.
 const QUIET_SECS: f64 = 0.3;
-
-/// Where balls are kept: in `within`, else where the system keeps what programs can make again.
-pub fn folder(within: Option<&Path>) -> Option<PathBuf> {
-    let data = within.map(Path::to_path_buf);
-    let of_system = || Some(ProjectDirs::from("", "", "burnish")?.cache_dir().to_path_buf());
-    Some(data.or_else(of_system)?.join("thumbnails"))
-}
 
 /// What is on a ball.
 #[derive(Clone, Debug)]

@@ -12,20 +12,12 @@ use burnish_core::file::write_atomic;
 use burnish_core::job::{Job, Outcome};
 use burnish_core::material::preset::{self, Preset};
 use burnish_core::material::saved::{self, SavedMaterial};
-use directories::ProjectDirs;
 use eframe::egui;
 
 use super::request::{Request, Requests};
 
 /// Most files that are read of a folder.
 const MAX_FILES: usize = 2000;
-
-/// Where the user's presets are: in `within`, else where the system keeps data of programs.
-pub fn folder(within: Option<&Path>) -> Option<PathBuf> {
-    let data = within.map(Path::to_path_buf);
-    let of_system = || Some(ProjectDirs::from("", "", "burnish")?.data_dir().to_path_buf());
-    Some(data.or_else(of_system)?.join("presets"))
-}
 
 /// The user's presets as they are known now.
 #[derive(Default)]

@@ -9,7 +9,7 @@ use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
 
-use super::{LossLog, Shown, Status};
+use super::{LossLog, Shown, Status, Trial};
 
 /// A viewport on the window's device.
 pub struct Live {
@@ -22,7 +22,7 @@ pub struct Live {
     condition: Condition,
     /// The window was not shown yet.
     first: bool,
-    inject_loss: bool,
+    trial: Option<Trial>,
 }
 
 /// Whether there is something to draw with.
@@ -53,8 +53,14 @@ impl Live {
             losses,
             condition: Condition::Sound,
             first: true,
-            inject_loss: false,
+            trial: None,
         }
+    }
+
+    /// Tells no times, so that the window looks the same each time: for snapshots.
+    pub fn with_fixed_clock(mut self) -> Live {
+        self.status.fixed_clock = true;
+        self
     }
 
     /// Draws what is due.
@@ -76,8 +82,10 @@ impl Live {
     }
 
     fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
-        if std::mem::take(&mut self.inject_loss) {
-            return Err(GpuError::Failed("a loss for trial".into()).into());
+        match self.trial.take() {
+            Some(Trial::Call) => return Err(GpuError::Failed("a call, for trial".into()).into()),
+            Some(Trial::Device) => return Err(GpuError::Failed("device lost: for trial".into()).into()),
+            None => {}
         }
         self.viewport.set_scene(scene)?;
         let drawn = self.viewport.draw(frame)?;
@@ -161,9 +169,9 @@ impl Live {
         (self.condition == Condition::Restart).then(|| self.losses.clone())
     }
 
-    /// Makes the next frame find its device lost.
-    pub fn inject_loss(&mut self) {
-        self.inject_loss = true;
+    /// Makes the next frame fail.
+    pub fn inject(&mut self, trial: Trial) {
+        self.trial = Some(trial);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::panel::Pane;
 use super::session::Session;
 
 /// What a user can ask for without an argument.
@@ -33,10 +34,14 @@ pub enum Command {
     NewMaterial,
     /// Copies the material under a new name.
     DuplicateMaterial,
+    /// Removes a material that nothing has.
+    RemoveMaterial,
     /// Makes all materials like this one.
     ApplyToAll,
     /// Makes the materials of the selected objects like this one.
     ApplyToSelected,
+    /// Names the selected object.
+    Rename,
     /// Hides the selected objects.
     Hide,
     /// Hides all others.
@@ -57,6 +62,8 @@ pub enum Command {
     Orthographic,
     /// Keeps the point of view.
     SaveCamera,
+    /// Shows a panel or puts it away.
+    Panel(Pane),
     /// The palette.
     Palette,
     /// The shortcut page.
@@ -67,8 +74,12 @@ pub enum Command {
     ScaleDown,
     /// Natural size.
     ScaleReset,
-    /// Light or dark.
-    Theme,
+    /// Light or dark as the system is.
+    ThemeSystem,
+    /// Light.
+    ThemeLight,
+    /// Dark.
+    ThemeDark,
     /// Panels where they were at first.
     ResetLayout,
 }
@@ -144,6 +155,10 @@ const fn entry(
     Entry { command, menu, title, shortcut, help }
 }
 
+const fn panel(pane: Pane, title: &'static str, help: &'static str) -> Entry {
+    entry(Menu::View, Command::Panel(pane), title, None, help)
+}
+
 /// All commands, in the order of the menus.
 pub const TABLE: &[Entry] = &[
     entry(Menu::File, Command::Start, "Start page", None, "Recent documents and the default workbench."),
@@ -155,8 +170,21 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::File, Command::Quit, "Quit", ctrl(Key::Q), "End the program."),
     entry(Menu::Edit, Command::Undo, "Undo", ctrl(Key::Z), "Take back the last edit."),
     entry(Menu::Edit, Command::Redo, "Redo", ctrl_shift(Key::Z), "Do the last undone edit again."),
-    entry(Menu::Material, Command::NewMaterial, "New material", ctrl(Key::N), "Add a material."),
-    entry(Menu::Material, Command::DuplicateMaterial, "Duplicate material", ctrl(Key::D), "Copy it under a new name."),
+    entry(
+        Menu::Material,
+        Command::NewMaterial,
+        "New material",
+        ctrl(Key::N),
+        "Add a material; the selected objects get it.",
+    ),
+    entry(
+        Menu::Material,
+        Command::DuplicateMaterial,
+        "Duplicate material",
+        ctrl(Key::D),
+        "Copy the material under a new name; the selected objects get the copy.",
+    ),
+    entry(Menu::Material, Command::RemoveMaterial, "Remove material", None, "Remove a material that no object has."),
     entry(Menu::Material, Command::CopyMaterial, "Copy material", ctrl_shift(Key::C), "Remember the material."),
     entry(
         Menu::Material,
@@ -173,6 +201,7 @@ pub const TABLE: &[Entry] = &[
         "Give the selected objects this material.",
     ),
     entry(Menu::Material, Command::ApplyToAll, "Apply to all objects", None, "Give every object this material."),
+    entry(Menu::Object, Command::Rename, "Rename", key(Key::F2), "Give the selected object another name."),
     entry(Menu::Object, Command::Hide, "Hide", key(Key::H), "Hide the selected objects."),
     entry(Menu::Object, Command::Isolate, "Isolate", key(Key::I), "Hide all other objects."),
     entry(Menu::Object, Command::ShowAll, "Show all", ctrl_shift(Key::H), "Show every object."),
@@ -183,24 +212,121 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::View, Command::ViewTop, "Top view", key(Key::Num7), "Look from above."),
     entry(Menu::View, Command::Orthographic, "Orthographic", key(Key::Num5), "Parallel or perspective."),
     entry(Menu::View, Command::SaveCamera, "Save camera", None, "Keep this point of view."),
+    panel(Pane::Viewport, "Viewport panel", "Show the picture or put it away."),
+    panel(Pane::Scene, "Scene panel", "Show the objects or put them away."),
+    panel(Pane::Material, "Material panel", "Show the material's factors or put them away."),
+    panel(Pane::Presets, "Presets panel", "Show the metals or put them away."),
+    panel(Pane::Environment, "Environment panel", "Show light and view or put them away."),
+    panel(Pane::Reflectance, "Reflectance panel", "Show the plot of reflectance or put it away."),
+    panel(Pane::History, "History panel", "Show the list of steps or put it away."),
+    entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
     entry(Menu::View, Command::ScaleUp, "Larger interface", ctrl(Key::Plus), "Enlarge text and widgets."),
     entry(Menu::View, Command::ScaleDown, "Smaller interface", ctrl(Key::Minus), "Shrink text and widgets."),
     entry(Menu::View, Command::ScaleReset, "Natural size", ctrl(Key::Num0), "Text and widgets at their natural size."),
-    entry(Menu::View, Command::Theme, "Light or dark", None, "Change between the light and the dark theme."),
-    entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
+    entry(Menu::View, Command::ThemeSystem, "System theme", None, "Light or dark, as the system is."),
+    entry(Menu::View, Command::ThemeLight, "Light theme", None, "A light window."),
+    entry(Menu::View, Command::ThemeDark, "Dark theme", None, "A dark, neutral window: best for judging color."),
     entry(Menu::Help, Command::Palette, "Command palette", ctrl(Key::K), "Find any command by its name."),
     entry(Menu::Help, Command::Shortcuts, "Shortcuts", key(Key::F1), "All shortcuts and gestures."),
 ];
 
+impl Entry {
+    /// A line stands above it in its menu.
+    pub fn begins_group(&self) -> bool {
+        matches!(
+            self.command,
+            Command::Open
+                | Command::Save
+                | Command::SaveImage
+                | Command::Quit
+                | Command::CopyMaterial
+                | Command::ApplyToSelected
+                | Command::Hide
+                | Command::ViewFront
+                | Command::SaveCamera
+                | Command::Panel(Pane::Viewport)
+                | Command::ScaleUp
+                | Command::ThemeSystem
+        )
+    }
+}
+
 impl Command {
+    /// Its line in the table.
+    pub fn entry(self) -> Option<&'static Entry> {
+        TABLE.iter().find(|entry| entry.command == self)
+    }
+
     /// True where the command can do something now.
     pub fn is_enabled(self, session: &Session) -> bool {
+        self.obstacle(session).is_none()
+    }
+
+    /// Why the command can do nothing now, in words.
+    pub fn obstacle(self, session: &Session) -> Option<&'static str> {
+        let unless = |possible: bool, reason| (!possible).then_some(reason);
         match self {
-            Command::Undo => !session.history().past().is_empty(),
-            Command::Redo => session.history().future().next().is_some(),
-            Command::PasteMaterial => session.clipboard.is_some(),
-            Command::Hide | Command::Isolate | Command::ApplyToSelected => !session.selection.objects.is_empty(),
-            _ => true,
+            Command::Undo => unless(!session.history().past().is_empty(), "Nothing was edited."),
+            Command::Redo => unless(session.history().future().next().is_some(), "Nothing was undone."),
+            Command::PasteMaterial => unless(session.clipboard.is_some(), "Copy a material first."),
+            Command::CopyMaterial | Command::DuplicateMaterial | Command::ApplyToAll => {
+                unless(session.material().is_some(), "There is no material.")
+            }
+            Command::RemoveMaterial => {
+                let mut trial = (**session.document()).clone();
+                let removable = trial.remove_material(session.selection.material);
+                unless(removable, "An object has it, or it comes with the model.")
+            }
+            Command::Hide | Command::Isolate | Command::ApplyToSelected | Command::Rename => {
+                unless(!session.selection.objects.is_empty(), "Select an object first.")
+            }
+            Command::ShowAll => {
+                let hidden = session.document().objects.iter().any(|object| object.hidden);
+                unless(hidden, "No object is hidden.")
+            }
+            _ => None,
         }
+    }
+
+    /// Also makes sense on the start page, where no document is seen.
+    pub fn suits_start_page(self) -> bool {
+        matches!(
+            self,
+            Command::Start
+                | Command::Open
+                | Command::Quit
+                | Command::ScaleUp
+                | Command::ScaleDown
+                | Command::ScaleReset
+                | Command::ThemeSystem
+                | Command::ThemeLight
+                | Command::ThemeDark
+                | Command::ResetLayout
+                | Command::Palette
+                | Command::Shortcuts
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn no_title_and_no_key_stands_for_two_commands() {
+        let titles: BTreeSet<&str> = TABLE.iter().map(|entry| entry.title).collect();
+        assert_eq!(titles.len(), TABLE.len());
+        let keys: Vec<_> = TABLE.iter().filter_map(|entry| entry.shortcut).collect();
+        for (index, key) in keys.iter().enumerate() {
+            assert!(!keys[..index].contains(key), "{key:?}");
+        }
+        assert!(TABLE.iter().all(|entry| entry.help.ends_with('.') && Menu::ALL.contains(&entry.menu)));
+    }
+
+    #[test]
+    fn every_panel_can_be_shown_and_put_away() {
+        assert!(Pane::ALL.iter().all(|pane| Command::Panel(*pane).entry().is_some()));
     }
 }

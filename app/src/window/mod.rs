@@ -7,16 +7,23 @@
 mod commands;
 mod edits;
 mod files;
+mod layout;
 mod native;
+mod palette;
 mod panel;
 mod preferences;
 mod request;
 mod session;
+mod shortcuts;
 mod stage;
+mod theme;
+mod toasts;
+mod widget;
 mod workbench;
 
 pub use commands::{Command, Entry, Menu, TABLE};
 pub use native::run;
+pub use panel::Pane;
 pub use preferences::Preferences;
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};

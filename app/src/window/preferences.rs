@@ -21,6 +21,9 @@ pub struct Preferences {
     pub ui_scale: f32,
     /// Mouse buttons of the viewport.
     pub navigation: Navigation,
+    /// Where the panels are; as at first when absent or unreadable.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layout: Option<serde_json::Value>,
     /// Factor on how far a drag or a turn of the wheel goes, 0.1 to 10.
     pub navigation_speed: f32,
     /// Zooms the other way.
@@ -48,6 +51,7 @@ impl Default for Preferences {
             dark: None,
             ui_scale: 1.0,
             navigation: Navigation::default(),
+            layout: None,
             navigation_speed: 1.0,
             invert_zoom: false,
         }

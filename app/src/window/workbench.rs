@@ -3,16 +3,19 @@
 use std::path::PathBuf;
 
 use burnish_core::document;
-use eframe::egui;
-use egui_tiles::{Container, Linear, LinearDir, Tiles, Tree};
+use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
+use egui_tiles::Tree;
 
-use super::commands::{Command, Menu, TABLE};
+use super::commands::{Command, Entry, Menu, TABLE};
 use super::files::Files;
+use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine};
 use super::preferences::Preferences;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
+use super::toasts::Toasts;
+use super::{edits, layout, shortcuts, theme};
 
 /// How the window starts.
 #[derive(Clone, Debug, Default)]
@@ -34,28 +37,40 @@ pub struct Workbench {
     stage: Stage,
     panels: Panels,
     tree: Tree<Pane>,
+    /// The layout differs from that of the preferences.
+    rearranged: bool,
     start: Option<StartPage>,
     status: StatusLine,
     requests: Requests,
     files: Files,
+    toasts: Toasts,
+    palette: Option<Palette>,
+    shortcut_page: bool,
 }
 
 impl Workbench {
     /// The workbench as it is at first.
-    pub fn new(_ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
+    pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
         let scene = options.scene.clone().unwrap_or_else(|| document::DEFAULT_SCENE.into());
         let opened =
             document::open(&scene).unwrap_or_else(|_| document::reload(Default::default(), &Default::default()));
+        let preferences = Preferences::default();
+        theme::install(ctx);
+        theme::apply(ctx, &preferences);
         Workbench {
             session: Session::new(opened, None),
-            preferences: Preferences::default(),
+            tree: preferences.layout.as_ref().and_then(layout::restore).unwrap_or_else(layout::initial),
+            rearranged: false,
+            preferences,
             stage,
             panels: Panels::default(),
-            tree: default_layout(),
             start: options.scene.is_none().then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
             files: Files::default(),
+            toasts: Toasts::default(),
+            palette: None,
+            shortcut_page: false,
         }
     }
 
@@ -67,6 +82,27 @@ impl Workbench {
     /// What is open, for tests that edit beside the panels.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
+    }
+
+    /// The user's choices.
+    pub fn preferences(&self) -> &Preferences {
+        &self.preferences
+    }
+
+    /// The user's choices, for those who make them beside the window.
+    pub fn preferences_mut(&mut self) -> &mut Preferences {
+        &mut self.preferences
+    }
+
+    /// Shows a panel, before the other tabs of its place.
+    pub fn show_panel(&mut self, pane: Pane) {
+        layout::show(&mut self.tree, pane);
+        self.rearranged = true;
+    }
+
+    /// Messages that are shown.
+    pub fn messages(&self) -> impl Iterator<Item = &str> {
+        self.toasts.texts()
     }
 
     /// The source of the picture.
@@ -81,19 +117,50 @@ impl Workbench {
 
     /// Draws everything and then does what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
+        theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files } = self;
+        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
         let mut context = Context { session, preferences, stage, requests };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
+        let middle = ui.available_rect_before_wrap();
         egui::CentralPanel::no_frame().show(ui, |ui| match start {
             Some(page) => page.ui(ui, &mut context),
-            None => tree.ui(&mut Docked { panels, context: &mut context }, ui),
+            None => {
+                let mut docked = Docked { panels, context: &mut context, rearranged: false };
+                tree.ui(&mut docked, ui);
+                self.rearranged |= docked.rearranged;
+            }
         });
         files.frame(ui, session, preferences, requests);
+        self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());
+        }
+        self.toasts.ui(ui.ctx(), middle);
+        self.keep_layout(ui.ctx());
+    }
+
+    /// What lies over the panels: palette and shortcut page.
+    fn above_ui(&mut self, ctx: &egui::Context) {
+        if let Some(mut palette) = self.palette.take() {
+            match palette.ui(ctx, |command| self.obstacle(command)) {
+                Chosen::Nothing => self.palette = Some(palette),
+                Chosen::Closed => {}
+                Chosen::Command(command) => self.requests.push(Request::Command(command)),
+            }
+        }
+        if self.shortcut_page {
+            shortcuts::ui(ctx, &mut self.shortcut_page, self.preferences.navigation);
+        }
+    }
+
+    /// Puts a changed layout into the preferences once no button is down: a drag changes it every frame.
+    fn keep_layout(&mut self, ctx: &egui::Context) {
+        if self.rearranged && !ctx.input(|input| input.pointer.any_down()) {
+            self.preferences.layout = layout::store(&self.tree);
+            self.rearranged = false;
         }
     }
 
@@ -101,19 +168,43 @@ impl Workbench {
     fn fulfil(&mut self, request: Request, ctx: &egui::Context) {
         match request {
             Request::Command(command) => self.command(command, ctx),
-            Request::Notice(_) | Request::Error(_) => {}
+            Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
+            Request::Error(text) => self.toasts.error(text, self.session.now_secs),
             about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
+        }
+        // An answer is shown in the next frame.
+        if !self.requests.is_empty() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Why a command can do nothing now, in words.
+    fn obstacle(&self, command: Command) -> Option<&'static str> {
+        if self.start.is_some() && !command.suits_start_page() {
+            return Some("Open a scene first.");
+        }
+        command.obstacle(&self.session)
+    }
+
+    /// For commands that switch something: whether it is on.
+    fn is_on(&self, command: Command) -> Option<bool> {
+        match command {
+            Command::Panel(pane) => Some(layout::is_shown(&self.tree, pane)),
+            Command::Orthographic => Some(self.session.document().view.camera.orthographic),
+            Command::ThemeSystem => Some(self.preferences.dark.is_none()),
+            Command::ThemeLight => Some(self.preferences.dark == Some(false)),
+            Command::ThemeDark => Some(self.preferences.dark == Some(true)),
+            _ => None,
         }
     }
 
     fn command(&mut self, command: Command, ctx: &egui::Context) {
-        if !command.is_enabled(&self.session) {
+        if self.obstacle(command).is_some() {
             return;
         }
         match command {
             Command::Undo => _ = self.session.undo(),
             Command::Redo => _ = self.session.redo(),
-            Command::ResetLayout => self.tree = default_layout(),
             Command::Start => self.start = Some(StartPage::default()),
             Command::Open
             | Command::LoadEnvironment
@@ -132,27 +223,54 @@ impl Workbench {
             | Command::PasteMaterial
             | Command::NewMaterial
             | Command::DuplicateMaterial
+            | Command::RemoveMaterial
             | Command::ApplyToAll
             | Command::ApplyToSelected
             | Command::Hide
             | Command::Isolate
-            | Command::ShowAll => super::edits::command(command, &mut self.session),
-            Command::Palette
-            | Command::Shortcuts
-            | Command::ScaleUp
-            | Command::ScaleDown
-            | Command::ScaleReset
-            | Command::Theme => {}
+            | Command::ShowAll => edits::command(command, &mut self.session, &mut self.requests),
+            Command::Rename => {
+                self.show_panel(Pane::Scene);
+                self.panels.scene.rename(&self.session);
+            }
+            Command::Panel(pane) => {
+                layout::toggle(&mut self.tree, pane);
+                self.rearranged = true;
+            }
+            Command::ResetLayout => {
+                self.tree = layout::initial();
+                self.preferences.layout = None;
+            }
+            Command::Palette => self.palette = if self.palette.is_some() { None } else { Some(Palette::default()) },
+            Command::Shortcuts => self.shortcut_page = !self.shortcut_page,
+            Command::ScaleUp => self.preferences.ui_scale = theme::scaled(self.preferences.ui_scale, 1.0),
+            Command::ScaleDown => self.preferences.ui_scale = theme::scaled(self.preferences.ui_scale, -1.0),
+            Command::ScaleReset => self.preferences.ui_scale = 1.0,
+            Command::ThemeSystem => self.preferences.dark = None,
+            Command::ThemeLight => self.preferences.dark = Some(false),
+            Command::ThemeDark => self.preferences.dark = Some(true),
         }
+        ctx.request_repaint();
     }
 
     /// Commands whose keys were pressed; those without a modifier only while no text is edited.
     fn shortcuts(&mut self, ui: &egui::Ui) {
+        // A dialog has the keys for itself; only the palette's own takes it away again.
+        let modal = ui.memory(|memory| memory.top_modal_layer().is_some());
         let typing = ui.ctx().egui_wants_keyboard_input();
-        for entry in TABLE {
-            let Some(shortcut) = entry.shortcut else { continue };
-            let plain = shortcut.modifiers.is_none() && shortcut.logical_key != egui::Key::F1;
-            if !(plain && typing) && ui.input_mut(|input| input.consume_shortcut(&shortcut)) {
+        // `Ctrl+=` stands for `Ctrl++` where plus needs Shift.
+        let plus = KeyboardShortcut::new(Modifiers::COMMAND, Key::Equals);
+        let second = Command::ScaleUp.entry().map(|entry| (plus, entry));
+        let mut keys: Vec<(KeyboardShortcut, &Entry)> =
+            TABLE.iter().filter_map(|entry| Some((entry.shortcut?, entry))).chain(second).collect();
+        // Keys match although more modifiers are held: those with Shift go first.
+        keys.sort_by_key(|(shortcut, _)| !shortcut.modifiers.shift);
+        for (shortcut, entry) in keys {
+            let function_key = matches!(shortcut.logical_key, Key::F1);
+            let blocked =
+                modal && entry.command != Command::Palette || shortcut.modifiers.is_none() && !function_key && typing;
+            // Alt belongs to window managers and navigation, and is in no shortcut.
+            if !blocked && ui.input_mut(|input| !input.modifiers.alt && input.consume_shortcut(&shortcut)) {
                 self.requests.push(Request::Command(entry.command));
             }
         }
@@ -162,42 +280,31 @@ impl Workbench {
         egui::MenuBar::new().ui(ui, |ui| {
             for menu in Menu::ALL {
                 ui.menu_button(menu.title(), |ui| {
-                    for entry in TABLE.iter().filter(|entry| entry.menu == menu) {
-                        let mut button = egui::Button::new(entry.title);
-                        if let Some(shortcut) = &entry.shortcut {
-                            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
+                    for (index, entry) in TABLE.iter().filter(|entry| entry.menu == menu).enumerate() {
+                        if entry.begins_group() && index > 0 {
+                            ui.separator();
                         }
-                        let enabled = entry.command.is_enabled(&self.session);
-                        if ui.add_enabled(enabled, button).on_hover_text(entry.help).clicked() {
-                            self.requests.push(Request::Command(entry.command));
-                        }
+                        self.menu_entry_ui(ui, entry);
                     }
                 });
             }
         });
     }
-}
 
-/// The viewport in the middle, objects and metals left, the material right.
-fn default_layout() -> Tree<Pane> {
-    let mut tiles = Tiles::default();
-    let mut tabs = |panes: &[Pane]| {
-        let children = panes.iter().map(|pane| tiles.insert_pane(*pane)).collect();
-        tiles.insert_tab_tile(children)
-    };
-    let (objects, metals) = (tabs(&[Pane::Scene, Pane::History]), tabs(&[Pane::Presets]));
-    let picture = tabs(&[Pane::Viewport]);
-    let (material, plot) = (tabs(&[Pane::Material, Pane::Environment]), tabs(&[Pane::Reflectance]));
-    let mut column = |upper, lower, share: f32| {
-        let mut linear = Linear::new(LinearDir::Vertical, vec![upper, lower]);
-        linear.shares.set_share(upper, share);
-        tiles.insert_container(Container::Linear(linear))
-    };
-    let (left, right) = (column(objects, metals, 0.6), column(material, plot, 2.2));
-    let mut row = Linear::new(LinearDir::Horizontal, vec![left, picture, right]);
-    row.shares.set_share(left, 0.42);
-    row.shares.set_share(picture, 1.5);
-    row.shares.set_share(right, 0.55);
-    let root = tiles.insert_container(Container::Linear(row));
-    Tree::new(egui::Id::unique("layout"), root, tiles)
+    fn menu_entry_ui(&mut self, ui: &mut egui::Ui, entry: &Entry) {
+        let obstacle = self.obstacle(entry.command);
+        let mut button = match self.is_on(entry.command) {
+            Some(on) => egui::Button::selectable(on, entry.title),
+            None => egui::Button::new(entry.title),
+        };
+        if let Some(shortcut) = &entry.shortcut {
+            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
+        }
+        let response = ui.add_enabled(obstacle.is_none(), button).on_hover_text(entry.help);
+        if let Some(reason) = obstacle {
+            response.on_disabled_hover_text(reason);
+        } else if response.clicked() {
+            self.requests.push(Request::Command(entry.command));
+        }
+    }
 }

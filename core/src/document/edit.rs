@@ -198,6 +198,20 @@ impl Document {
         name
     }
 
+    /// Renames a saved camera; a name that is taken gets a number.
+    pub fn rename_camera(&mut self, place: usize, name: &str) {
+        let taken = |candidate: &str| {
+            self.cameras.iter().enumerate().any(|(other, camera)| other != place && camera.name == candidate)
+        };
+        if name.is_empty() {
+            return;
+        }
+        let name = free(name, taken);
+        if let Some(camera) = self.cameras.get_mut(place) {
+            camera.name = name;
+        }
+    }
+
     /// Sets a setting of the lighting method; the default is not stored.
     pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
         let spec = param::find(classical::PARAMS, key)?;

@@ -155,9 +155,9 @@ shared! {
         samples: u32,
         scale: f32,
         sources: u32,
-        pad0: u32,
-        pad1: u32,
-        pad2: u32,
+        first_tile: u32,
+        listed: u32,
+        rows: u32,
     }
 }
 

@@ -79,9 +79,12 @@ struct EnvironmentStep {
     scale: f32,
     // Sources to add to a filtered level.
     sources: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    // Number of the first tile of 8 by 8 texels, or its place in the list.
+    first_tile: u32,
+    // 1 when only the listed tiles are written.
+    listed: u32,
+    // Rows of the equirectangular map.
+    rows: u32,
 }
 
 struct TextureSlot {

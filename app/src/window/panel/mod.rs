@@ -45,7 +45,7 @@ pub struct Context<'a> {
 pub struct DraggedPreset(pub String);
 
 /// A panel that can be docked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Pane {
     /// The picture.
     Viewport,
@@ -87,6 +87,11 @@ impl Pane {
             Pane::History => "History",
         }
     }
+
+    /// Fills its place, with scroll bars of its own if any.
+    fn scrolls_itself(self) -> bool {
+        matches!(self, Pane::Viewport | Pane::Scene | Pane::History)
+    }
 }
 
 /// The docked panels.
@@ -94,7 +99,8 @@ impl Pane {
 pub struct Panels {
     /// Also moves the camera on command.
     pub viewport: ViewportPanel,
-    scene: SceneTree,
+    /// Also renames on command.
+    pub scene: SceneTree,
     material: MaterialPanel,
     presets: PresetsPanel,
     environment: EnvironmentPanel,
@@ -122,13 +128,15 @@ pub struct Docked<'a, 'b> {
     pub panels: &'a mut Panels,
     /// What they use.
     pub context: &'a mut Context<'b>,
+    /// Set where panels were moved or resized.
+    pub rearranged: bool,
 }
 
 impl egui_tiles::Behavior<Pane> for Docked<'_, '_> {
     fn pane_ui(&mut self, ui: &mut egui::Ui, _tile: egui_tiles::TileId, pane: &mut Pane) -> egui_tiles::UiResponse {
         let margin = if *pane == Pane::Viewport { 0 } else { 6 };
         egui::Frame::new().inner_margin(margin).show(ui, |ui| {
-            if *pane == Pane::Viewport {
+            if pane.scrolls_itself() {
                 self.panels.ui(*pane, ui, self.context);
             } else {
                 egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -141,6 +149,14 @@ impl egui_tiles::Behavior<Pane> for Docked<'_, '_> {
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
         pane.title().into()
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        22.0
+    }
+
+    fn on_edit(&mut self, _edit: egui_tiles::EditAction) {
+        self.rearranged = true;
     }
 
     fn simplification_options(&self) -> egui_tiles::SimplificationOptions {

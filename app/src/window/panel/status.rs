@@ -1,8 +1,14 @@
-//! The status line.
+//! The status line: what the picture cost, how far it is, by what it was made.
 
-use eframe::egui;
+use burnish_core::scene::Scene;
+use eframe::egui::{self, Align, Layout, RichText};
 
 use super::Context;
+use crate::window::session::Session;
+use crate::window::stage::Status;
+
+/// Jittered frames of a picture at rest.
+const SHARP: u32 = 16;
 
 /// The line.
 #[derive(Default)]
@@ -11,7 +17,111 @@ pub struct StatusLine {}
 impl StatusLine {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
-        let _ = &context.session;
-        ui.label("Status");
+        let status = context.stage.status();
+        ui.horizontal(|ui| {
+            for (text, hover) in status.map(picture).unwrap_or_default() {
+                item_ui(ui, &text, hover);
+            }
+            item_ui(ui, &triangles(context.session.scene()), "Triangles of the visible objects.");
+            item_ui(ui, &filled_in(context.session), FILLED_HELP);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let adapter = status.map_or("no adapter", |status| &status.adapter);
+                let software = status.is_some_and(|status| status.software);
+                let kind = if software { "Software rasterizer" } else { "Graphics adapter" };
+                let label = egui::Label::new(RichText::new(adapter).small()).truncate();
+                ui.add(label).on_hover_text(format!("{kind} that draws the picture: {adapter}"));
+                notices_ui(ui, &notices(context.session, status));
+            });
+        });
+    }
+}
+
+const FILLED_HELP: &str = "The lighting method, and by what each part of the light is computed. `none` is left black.";
+
+fn item_ui(ui: &mut egui::Ui, text: &str, hover: &str) {
+    ui.label(RichText::new(text).small()).on_hover_text(hover);
+    ui.separator();
+}
+
+/// Cost and progress of the picture.
+fn picture(status: &Status) -> Vec<(String, &'static str)> {
+    let drawn = &status.drawn;
+    if drawn.size.x == 0 {
+        return vec![("no picture yet".into(), "Nothing was drawn so far.")];
+    }
+    let share = f64::from(drawn.size.x) / f64::from(status.size.x.max(1));
+    let progress = match (drawn.settled, drawn.preparing) {
+        (_, Some(share)) => format!("preparing light {:.0} %", 100.0 * share),
+        (true, None) => "sharp".into(),
+        (false, None) => format!("frame {} of {SHARP}", drawn.frames),
+    };
+    vec![
+        (format!("{:.0} ms", status.frame_ms), "Time of the last frame that showed a change, milliseconds."),
+        (format!("{:.0} %", 100.0 * share), "Width of what was drawn as a part of the viewport's."),
+        (progress, "Frames in the picture: it sharpens while nothing changes."),
+    ]
+}
+
+fn triangles(scene: &Scene) -> String {
+    let visible = scene.instances.iter().filter(|instance| instance.visible);
+    let count: usize = visible.filter_map(|i| scene.meshes.get(i.mesh)).map(|mesh| mesh.indices.len() / 3).sum();
+    match count {
+        0..10_000 => format!("{count} triangles"),
+        10_000..10_000_000 => format!("{:.0}k triangles", count as f64 / 1e3),
+        _ => format!("{:.1}M triangles", count as f64 / 1e6),
+    }
+}
+
+/// What computes each part of the light.
+fn filled_in(session: &Session) -> String {
+    let method = &session.document().lighting.method;
+    let lamps = if session.scene().lights.is_empty() { "no lamps" } else { "lamps: shadow maps" };
+    format!("{method}; environment: classical; {lamps}; indirect: none")
+}
+
+/// What the user should know about document and picture.
+fn notices(session: &Session, status: Option<&Status>) -> Vec<String> {
+    let resolved = session.resolved();
+    let missing = resolved.missing.iter().map(|missing| format!("{}: {}", missing.path, missing.reason));
+    let drawn = status.into_iter().flat_map(|status| status.drawn.notices.clone());
+    missing.chain(resolved.notices.iter().cloned()).chain(drawn).collect()
+}
+
+fn notices_ui(ui: &mut egui::Ui, notices: &[String]) {
+    let text = match notices.len() {
+        0 => return,
+        1 => "1 notice".to_string(),
+        more => format!("{more} notices"),
+    };
+    ui.separator();
+    ui.label(RichText::new(text).small().color(ui.visuals().warn_fg_color)).on_hover_text(notices.join("\n"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burnish_core::document;
+    use burnish_render::Drawn;
+    use glam::UVec2;
+
+    #[test]
+    fn the_line_says_how_far_the_picture_is() {
+        let mut status = Status { size: UVec2::new(800, 600), frame_ms: 41.6, ..Status::default() };
+        assert_eq!(picture(&status)[0].0, "no picture yet");
+        status.drawn = Drawn { size: UVec2::new(400, 300), frames: 1, ..Drawn::default() };
+        let texts: Vec<String> = picture(&status).into_iter().map(|(text, _)| text).collect();
+        assert_eq!(texts, ["42 ms", "50 %", "frame 1 of 16"]);
+        status.drawn = Drawn { size: status.size, frames: 16, settled: true, ..Drawn::default() };
+        assert_eq!(picture(&status)[2].0, "sharp");
+    }
+
+    #[test]
+    fn what_is_missing_and_what_is_filled_in_is_told() {
+        let session = Session::new(document::open("gallery:workbench").unwrap(), None);
+        assert!(notices(&session, None).is_empty());
+        assert!(filled_in(&session).starts_with("classical; environment: classical;"));
+        assert!(triangles(session.scene()).ends_with("triangles"));
+        let gone = document::reload(document::Document::new("/nowhere/gone.glb".into()), &Default::default());
+        assert_eq!(notices(&Session::new(gone, None), None).len(), 1);
     }
 }

@@ -79,8 +79,10 @@ mod tests {
 
     #[test]
     fn the_copy_keeps_the_power_of_the_map() {
-        for (width, height) in [(1024, 512), (1000, 499), (4096, 2048), (300, 2), (257, 129)] {
-            let texel = |i: u32| Vec3::new((i % 97) as f32, (i / 7 % 13) as f32, if i % 5003 == 0 { 1e4 } else { 0.0 });
+        for (width, height) in [(1024, 512), (1000, 499), (300, 2), (257, 129)] {
+            let texel = |i: u32| {
+                Vec3::new((i % 97) as f32, (i / 7 % 13) as f32, if i.is_multiple_of(5003) { 1e4 } else { 0.0 })
+            };
             let map = Environment::new("test", width, height, (0..width * height).map(texel).collect());
             let copy = downsampled(&map);
             assert!(copy.width <= 256 && copy.height <= 128);

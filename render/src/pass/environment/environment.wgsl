@@ -1,13 +1,26 @@
-// Builds the cubes of an environment, one level of one cube per dispatch, a texel per invocation, a face per z.
+// Builds the cubes of an environment: tiles of one level of one cube per dispatch, a texel per invocation.
 
 @group(0) @binding(0) var<uniform> params: EnvironmentStep;
-@group(0) @binding(1) var equirectangular: texture_2d<f32>;
+@group(0) @binding(1) var equirectangular: texture_2d_array<f32>;
 @group(0) @binding(2) var finer: texture_2d_array<f32>;
 @group(0) @binding(3) var radiance_cube: texture_cube<f32>;
 @group(0) @binding(4) var cube_sampler: sampler;
 @group(0) @binding(5) var target_level: texture_storage_2d_array<rgba16float, write>;
 
 @group(0) @binding(6) var<storage, read> sources: array<SourceData>;
+@group(0) @binding(7) var<storage, read> tiles: array<u32>;
+
+const TILE: u32 = 8;
+
+// Texel and face of an invocation. Tiles are numbered along rows, then faces.
+fn texel(group: vec3u, local: vec3u) -> vec3u {
+    let across = (textureDimensions(target_level).x + TILE - 1u) / TILE;
+    var tile = params.first_tile + group.x;
+    if params.listed != 0u {
+        tile = tiles[tile];
+    }
+    return vec3u(tile % across, tile / across % across, tile / (across * across)) * vec3u(TILE, TILE, 1u) + local;
+}
 
 fn classical_source(index: u32) -> mat2x3f {
     return mat2x3f(sources[index].direction, sources[index].power);
@@ -37,25 +50,32 @@ fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
     return textureSampleLevel(radiance_cube, cube_sampler, environment_from_cube(direction), level).rgb;
 }
 
+// The map lies in layers of rows.
+fn map_texel(x: i32, y: i32) -> vec3f {
+    let rows = i32(textureDimensions(equirectangular).y);
+    return textureLoad(equirectangular, vec2i(x, y % rows), y / rows, 0).rgb;
+}
+
 // Bilinear, wrapping around and stopping at the poles, as `Environment::radiance` on the CPU: `burnish measure` compares
 // what comes of both.
 fn equirectangular_radiance(d: vec3f) -> vec3f {
-    let size = vec2f(textureDimensions(equirectangular));
-    let p = cube_equirectangular(d) * size - 0.5;
+    let columns = textureDimensions(equirectangular).x;
+    let p = cube_equirectangular(d) * vec2f(f32(columns), f32(params.rows)) - 0.5;
     let low = floor(p);
     let f = p - low;
-    let w = i32(size.x);
+    let w = i32(columns);
     let x0 = (i32(low.x) + w) % w;
     let x1 = (i32(low.x) + 1 + w) % w;
-    let y0 = clamp(i32(low.y), 0, i32(size.y) - 1);
-    let y1 = clamp(i32(low.y) + 1, 0, i32(size.y) - 1);
-    let top = mix(textureLoad(equirectangular, vec2i(x0, y0), 0), textureLoad(equirectangular, vec2i(x1, y0), 0), f.x);
-    let bottom = mix(textureLoad(equirectangular, vec2i(x0, y1), 0), textureLoad(equirectangular, vec2i(x1, y1), 0), f.x);
-    return mix(top, bottom, f.y).rgb;
+    let y0 = clamp(i32(low.y), 0, i32(params.rows) - 1);
+    let y1 = clamp(i32(low.y) + 1, 0, i32(params.rows) - 1);
+    let top = mix(map_texel(x0, y0), map_texel(x1, y0), f.x);
+    let bottom = mix(map_texel(x0, y1), map_texel(x1, y1), f.x);
+    return mix(top, bottom, f.y);
 }
 
-@compute @workgroup_size(8, 8, 1)
-fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(TILE, TILE, 1)
+fn from_equirectangular(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let id = texel(group, local);
     let size = textureDimensions(target_level);
     if any(id.xy >= size) {
         return;
@@ -72,8 +92,9 @@ fn from_equirectangular(@builtin(global_invocation_id) id: vec3u) {
     store(id, sum / f32(n * n) * params.scale);
 }
 
-@compute @workgroup_size(8, 8, 1)
-fn downsample(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(TILE, TILE, 1)
+fn downsample(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let id = texel(group, local);
     if any(id.xy >= textureDimensions(target_level)) {
         return;
     }
@@ -90,8 +111,9 @@ fn downsample(@builtin(global_invocation_id) id: vec3u) {
     store(id, sum / weight);
 }
 
-@compute @workgroup_size(8, 8, 1)
-fn prefilter(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(TILE, TILE, 1)
+fn prefilter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let id = texel(group, local);
     let size = textureDimensions(target_level);
     if any(id.xy >= size) {
         return;
@@ -100,18 +122,10 @@ fn prefilter(@builtin(global_invocation_id) id: vec3u) {
     store(id, classical_prefilter(direction, params.alpha, params.samples, params.levels, params.sources));
 }
 
-// Level 0 of the prefiltered cube is the mirror: a copy.
-@compute @workgroup_size(8, 8, 1)
-fn copy(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= textureDimensions(target_level)) {
-        return;
-    }
-    store(id, textureLoad(finer, id.xy, id.z, 0).rgb);
-}
-
 // Sum over all texels of `finer`, a level of the radiance cube.
-@compute @workgroup_size(8, 8, 1)
-fn irradiance(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(TILE, TILE, 1)
+fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let id = texel(group, local);
     let size = textureDimensions(target_level);
     if any(id.xy >= size) {
         return;

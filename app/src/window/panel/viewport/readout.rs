@@ -64,7 +64,7 @@ pub fn text(radiance: Vec3) -> String {
 /// Four digits whatever the size, of the same width where possible.
 fn number(value: f32) -> String {
     match value.abs() {
-        v if v != 0.0 && (v < 1e-3 || v >= 1e5) => format!("{value:.2e}"),
+        v if v != 0.0 && !(1e-3..1e5).contains(&v) => format!("{value:.2e}"),
         v if v >= 1000.0 => format!("{value:.0}"),
         v if v >= 10.0 => format!("{value:.2}"),
         _ => format!("{value:.4}"),

@@ -51,10 +51,14 @@ pub struct Workbench {
 impl Workbench {
     /// The workbench as it is at first.
     pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
-        let scene = options.scene.clone().unwrap_or_else(|| document::DEFAULT_SCENE.into());
-        let opened =
-            document::open(&scene).unwrap_or_else(|_| document::reload(Default::default(), &Default::default()));
-        let preferences = Preferences::default();
+        let start = options.scene.is_none() && !options.recover;
+        // Scenes made by code are there at once; files are read by another thread while the default one is shown.
+        let scene = options.scene.as_deref().filter(|scene| scene.starts_with("gallery:"));
+        let made = scene.and_then(|scene| document::open(scene).ok());
+        let options = Options { scene: options.scene.filter(|_| made.is_none()), ..options };
+        let opened = made.or_else(|| document::open(document::DEFAULT_SCENE).ok());
+        let opened = opened.unwrap_or_else(|| document::reload(Default::default(), &Default::default()));
+        let (files, preferences) = Files::new(&options, &stage, ctx);
         theme::install(ctx);
         theme::apply(ctx, &preferences);
         Workbench {
@@ -64,10 +68,10 @@ impl Workbench {
             preferences,
             stage,
             panels: Panels::default(),
-            start: options.scene.is_none().then(StartPage::default),
+            start: start.then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
-            files: Files::default(),
+            files,
             toasts: Toasts::default(),
             palette: None,
             shortcut_page: false,
@@ -82,6 +86,22 @@ impl Workbench {
     /// What is open, for tests that edit beside the panels.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
+    }
+
+    /// Asks for something as a panel would; it is fulfilled in the next frame.
+    pub fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// A file is being read or written by another thread.
+    pub fn is_busy(&self) -> bool {
+        self.files.is_busy()
+    }
+
+    /// Goes over to another session, away from the start page.
+    pub fn set_session(&mut self, session: Session) {
+        self.session = session;
+        self.start = None;
     }
 
     /// The user's choices.
@@ -124,16 +144,24 @@ impl Workbench {
         let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
         let mut context = Context { session, preferences, stage, requests };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
+        if start.is_none() {
+            files.banner_ui(ui, &mut context);
+        }
         let middle = ui.available_rect_before_wrap();
-        egui::CentralPanel::no_frame().show(ui, |ui| match start {
-            Some(page) => page.ui(ui, &mut context),
+        let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
+            Some(page) => {
+                if page.ui(ui, &mut context, files.is_modal()) {
+                    *start = None;
+                }
+            }
             None => {
                 let mut docked = Docked { panels, context: &mut context, rearranged: false };
                 tree.ui(&mut docked, ui);
                 self.rearranged |= docked.rearranged;
             }
         });
-        files.frame(ui, session, preferences, requests);
+        files.frame(ui, &mut context);
         self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());
@@ -170,7 +198,12 @@ impl Workbench {
             Request::Command(command) => self.command(command, ctx),
             Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
             Request::Error(text) => self.toasts.error(text, self.session.now_secs),
-            about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
+            about_files => {
+                if !matches!(about_files, Request::PickFile(_) | Request::WriteRecovery) {
+                    self.start = None;
+                }
+                self.files.fulfil(about_files, &mut self.session, ctx);
+            }
         }
         // An answer is shown in the next frame.
         if !self.requests.is_empty() {
@@ -211,7 +244,8 @@ impl Workbench {
             | Command::Save
             | Command::SaveAs
             | Command::SaveImage
-            | Command::Quit => self.files.command(command, &mut self.session, &mut self.preferences, ctx),
+            | Command::Notices
+            | Command::Quit => self.files.command(command, &mut self.session, &self.stage, ctx),
             Command::Frame
             | Command::FrameAll
             | Command::ViewFront

@@ -101,6 +101,18 @@ impl Document {
         }
     }
 
+    /// Lets every slot with a picture from one file have it from another.
+    pub fn replace_texture_file(&mut self, old: &str, new: &str) {
+        for entry in &mut self.materials {
+            if entry.textures.values().any(|choice| *choice == TextureChoice::File(old.into())) {
+                let choices = Arc::make_mut(entry).textures.values_mut();
+                for choice in choices.filter(|choice| **choice == TextureChoice::File(old.into())) {
+                    *choice = TextureChoice::File(new.into());
+                }
+            }
+        }
+    }
+
     /// Adds a material that starts from the default one; returns its index.
     pub fn add_material(&mut self, name: &str) -> usize {
         let name = self.free_name(name);

@@ -9,7 +9,7 @@ use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
 
-use super::{LossLog, Shown, Status};
+use super::{LossLog, Shown, Status, Trial};
 
 /// A viewport on the window's device.
 pub struct Live {
@@ -20,7 +20,9 @@ pub struct Live {
     status: Status,
     losses: LossLog,
     condition: Condition,
-    inject_loss: bool,
+    /// The window was not shown yet.
+    first: bool,
+    trial: Option<Trial>,
 }
 
 /// Whether there is something to draw with.
@@ -50,12 +52,23 @@ impl Live {
             status,
             losses,
             condition: Condition::Sound,
-            inject_loss: false,
+            first: true,
+            trial: None,
         }
+    }
+
+    /// Tells no times, so that the window looks the same each time: for snapshots.
+    pub fn with_fixed_clock(mut self) -> Live {
+        self.status.fixed_clock = true;
+        self
     }
 
     /// Draws what is due.
     pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        if std::mem::take(&mut self.first) {
+            // The window appears at once, its picture when the shaders are compiled.
+            return Shown::default();
+        }
         match self.condition {
             Condition::Sound => {}
             Condition::Restart => return self.shown(Some("The graphics device was lost.".into()), false),
@@ -69,14 +82,15 @@ impl Live {
     }
 
     fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
-        if std::mem::take(&mut self.inject_loss) {
-            return Err(GpuError::Failed("a loss for trial".into()).into());
+        match self.trial.take() {
+            Some(Trial::Call) => return Err(GpuError::Failed("a call, for trial".into()).into()),
+            Some(Trial::Device) => return Err(GpuError::Failed("device lost: for trial".into()).into()),
+            None => {}
         }
         self.viewport.set_scene(scene)?;
-        let before = self.status.drawn.frames;
         let drawn = self.viewport.draw(frame)?;
-        // Frames of a picture at rest are drawn in parts: only a quick one is a measure.
-        if drawn.frames == 1 && (frame.moving || before != 1) {
+        // Pictures at rest are drawn in parts, and a hand that holds still asks for nothing: neither is a measure.
+        if frame.moving && drawn.milliseconds > 0.5 || self.status.frame_ms == 0.0 {
             self.status.frame_ms = drawn.milliseconds;
         }
         self.status.size = frame.size;
@@ -155,9 +169,9 @@ impl Live {
         (self.condition == Condition::Restart).then(|| self.losses.clone())
     }
 
-    /// Makes the next frame find its device lost.
-    pub fn inject_loss(&mut self) {
-        self.inject_loss = true;
+    /// Makes the next frame fail.
+    pub fn inject(&mut self, trial: Trial) {
+        self.trial = Some(trial);
     }
 }
 

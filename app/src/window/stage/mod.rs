@@ -21,6 +21,15 @@ pub enum Stage {
     Live(Box<Live>),
 }
 
+/// A failure to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trial {
+    /// A call fails; the device draws on.
+    Call,
+    /// The device is gone for good.
+    Device,
+}
+
 /// What the viewport shows in a frame of the window.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
@@ -47,6 +56,8 @@ pub struct Status {
     pub adapter: String,
     /// It is a software rasterizer.
     pub software: bool,
+    /// Nothing is timed, so that the window looks the same each time: for snapshots.
+    pub fixed_clock: bool,
 }
 
 impl Stage {
@@ -98,10 +109,10 @@ impl Stage {
         }
     }
 
-    /// Makes the next frame find its device lost, to try what happens then.
-    pub fn inject_loss(&mut self) {
+    /// Makes the next frame fail, to try what happens then.
+    pub fn inject(&mut self, trial: Trial) {
         if let Stage::Live(live) = self {
-            live.inject_loss();
+            live.inject(trial);
         }
     }
 }

@@ -11,7 +11,7 @@ use burnish_core::material::preset::{self, Preset};
 use burnish_core::scene::Picked;
 use burnish_render::Frame;
 use eframe::egui::emath::GuiRounding;
-use eframe::egui::{self, Align2, Color32, Rect, Response, Role, Sense, WidgetInfo, pos2};
+use eframe::egui::{self, Align2, Color32, Event, Modifiers, Rect, Response, Role, Sense, WidgetInfo, pos2};
 use glam::UVec2;
 
 use super::{Context, DraggedPreset};
@@ -35,6 +35,8 @@ const READOUT_HELP: &str = "Scene-linear Rec.709 radiance under the pointer befo
 /// The viewport.
 pub struct ViewportPanel {
     gesture: Option<Gesture>,
+    /// Keys that were held when a button went down: they say what it does, also when they are let go first.
+    held: Modifiers,
     /// Revision of the document that was drawn last, and when it changed.
     revision: u64,
     changed_secs: f64,
@@ -50,6 +52,7 @@ impl Default for ViewportPanel {
     fn default() -> Self {
         ViewportPanel {
             gesture: None,
+            held: Modifiers::NONE,
             revision: 0,
             changed_secs: f64::NEG_INFINITY,
             aspect: 1.5,
@@ -73,7 +76,10 @@ impl ViewportPanel {
             return;
         }
         self.aspect = size.x / size.y;
-        self.drag(&response, context, ui.input(|input| input.modifiers));
+        if let Some(held) = ui.input(|input| input.events.iter().rev().find_map(pressed_with)) {
+            self.held = held;
+        }
+        self.drag(&response, context);
         if response.contains_pointer() {
             wheel(Wheel::read(&ui.input(|input| input.events.clone())), context);
         }
@@ -116,10 +122,10 @@ impl ViewportPanel {
         (0.0..MOVING_SECS).contains(&(session.now_secs - self.changed_secs))
     }
 
-    fn drag(&mut self, response: &Response, context: &mut Context<'_>, held: egui::Modifiers) {
+    fn drag(&mut self, response: &Response, context: &mut Context<'_>) {
         for button in BUTTONS {
             if response.drag_started_by(button) {
-                self.gesture = navigation::gesture(context.preferences.navigation, button, held);
+                self.gesture = navigation::gesture(context.preferences.navigation, button, self.held);
             }
         }
         let feel = Feel::new(context.preferences);
@@ -148,8 +154,7 @@ impl ViewportPanel {
         let Some(pointer) = response.interact_pointer_pos() else { return };
         let at = overlay::relative(response.rect, pointer);
         let picked = context.stage.pick(context.session.scene(), frame, at);
-        let add = response.ctx.input(|input| input.modifiers.shift);
-        select(context.session, picked, add);
+        select(context.session, picked, self.held.shift);
         if response.double_clicked() && picked.is_some() {
             self.command(Command::Frame, context.session);
         }
@@ -225,6 +230,14 @@ impl ViewportPanel {
     }
 }
 
+/// Keys that are held while a button goes down.
+fn pressed_with(event: &Event) -> Option<Modifiers> {
+    match event {
+        Event::PointerButton { pressed: true, modifiers, .. } => Some(*modifiers),
+        _ => None,
+    }
+}
+
 /// A metal that comes with the program or with the document.
 fn preset<'a>(session: &'a Session, id: &str) -> Option<&'a Preset> {
     let own = session.document().presets.iter().map(|metal| metal.as_ref());
@@ -289,35 +302,4 @@ fn material_of(session: &Session, picked: Picked) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use burnish_core::document;
-
-    #[test]
-    fn a_pick_selects_shift_adds_and_nothing_deselects() {
-        let mut session = Session::new(document::open("gallery:workbench").unwrap(), None);
-        let keys = session.resolved().object_keys.clone();
-        let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO });
-        select(&mut session, at(0), false);
-        assert_eq!(session.selection.objects, keys[..1]);
-        assert_eq!(session.selection.material, session.scene().instances[0].material);
-        select(&mut session, at(1), true);
-        assert_eq!(session.selection.objects, keys[..2]);
-        select(&mut session, at(0), true);
-        assert_eq!(session.selection.objects, keys[1..2]);
-        select(&mut session, None, true);
-        assert_eq!(session.selection.objects.len(), 1);
-        select(&mut session, None, false);
-        assert!(session.selection.objects.is_empty());
-    }
-
-    #[test]
-    fn the_picture_says_what_it_shows() {
-        let mut session = Session::new(document::open("gallery:workbench").unwrap(), None);
-        let all = session.scene().instances.len();
-        assert_eq!(summary_text(&session), format!("Viewport: workbench, {all} objects"));
-        let key = session.resolved().object_keys[0].clone();
-        session.edit("Hide", "", |document| document.edit_object(&key, |object| object.hidden = true));
-        assert!(summary_text(&session).contains(&format!("{} object", all - 1)));
-    }
-}
+mod tests;

@@ -1,0 +1,191 @@
+use burnish_core::document::{self, Document};
+use eframe::egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+
+use super::*;
+use crate::window::preferences::{Navigation, Preferences};
+use crate::window::request::Requests;
+use crate::window::stage::Stage;
+
+struct Bench {
+    panel: ViewportPanel,
+    session: Session,
+    preferences: Preferences,
+    stage: Stage,
+    requests: Requests,
+}
+
+fn session() -> Session {
+    Session::new(document::open("gallery:workbench").unwrap(), None)
+}
+
+fn bench() -> Harness<'static, Bench> {
+    let bench = Bench {
+        panel: ViewportPanel::default(),
+        session: session(),
+        preferences: Preferences::default(),
+        stage: Stage::Flat,
+        requests: Requests::new(),
+    };
+    let show = |ui: &mut egui::Ui, bench: &mut Bench| {
+        bench.session.now_secs = ui.input(|input| input.time);
+        let Bench { panel, session, preferences, stage, requests } = bench;
+        panel.ui(ui, &mut Context { session, preferences, stage, requests });
+    };
+    let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);
+    harness.run_steps(2);
+    harness
+}
+
+fn middle(bench: &Harness<Bench>) -> Pos2 {
+    bench.get_by_label_contains("Viewport: workbench").rect().center()
+}
+
+/// Presses a button, moves by steps, lets go.
+fn drag(bench: &mut Harness<Bench>, button: PointerButton, modifiers: Modifiers, by: Vec2) {
+    let start = middle(bench);
+    let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+    bench.event(Event::ModifiersChanged(modifiers));
+    bench.event(Event::PointerMoved(start));
+    bench.event(press(start, true));
+    bench.run_steps(1);
+    for step in 1..=4 {
+        bench.event(Event::PointerMoved(start + by * (step as f32 / 4.0)));
+        bench.run_steps(1);
+    }
+    bench.event(press(start + by, false));
+    bench.event(Event::ModifiersChanged(Modifiers::NONE));
+    bench.run_steps(2);
+}
+
+fn turn_wheel(bench: &mut Harness<Bench>, notches: f32, modifiers: Modifiers) {
+    let at = middle(bench);
+    bench.hover_at(at);
+    bench.run_steps(1);
+    bench.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, notches),
+        phase: TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+        modifiers,
+    });
+    bench.run_steps(2);
+}
+
+fn document(bench: &Harness<Bench>) -> Document {
+    Document::clone(bench.state().session.document())
+}
+
+#[test]
+fn a_left_drag_turns_the_camera_and_undo_brings_it_back() {
+    let mut bench = bench();
+    let before = document(&bench);
+    drag(&mut bench, PointerButton::Primary, Modifiers::NONE, vec2(80.0, 20.0));
+    let after = document(&bench);
+    assert!(after.view.camera.yaw_deg < before.view.camera.yaw_deg);
+    assert!(after.view.camera.pitch_deg > before.view.camera.pitch_deg);
+    assert_eq!(after.view.camera.distance, before.view.camera.distance);
+    assert_eq!(bench.state().session.history().past().len(), 1, "a drag is one step");
+    assert_eq!(bench.state_mut().session.undo().as_deref(), Some(MOVE));
+    assert_eq!(document(&bench), before);
+}
+
+#[test]
+fn shift_and_right_drag_turns_the_light_and_two_of_them_are_two_steps() {
+    let mut bench = bench();
+    let before = document(&bench);
+    drag(&mut bench, PointerButton::Secondary, Modifiers::SHIFT, vec2(60.0, 0.0));
+    drag(&mut bench, PointerButton::Secondary, Modifiers::SHIFT, vec2(60.0, 0.0));
+    let after = document(&bench);
+    assert!(after.environment.rotation_deg > before.environment.rotation_deg + 20.0);
+    assert_eq!(after.view.camera, before.view.camera);
+    assert_eq!(bench.state().session.history().past().len(), 2);
+}
+
+#[test]
+fn buttons_follow_the_chosen_preset() {
+    let mut bench = bench();
+    bench.state_mut().preferences.navigation = Navigation::Blender;
+    let before = document(&bench);
+    drag(&mut bench, PointerButton::Primary, Modifiers::NONE, vec2(80.0, 20.0));
+    assert_eq!(document(&bench), before, "the left button only selects in Blender");
+    drag(&mut bench, PointerButton::Middle, Modifiers::SHIFT, vec2(80.0, 20.0));
+    let after = document(&bench).view.camera;
+    assert_ne!(after.target, before.view.camera.target);
+    assert_eq!(after.yaw_deg, before.view.camera.yaw_deg);
+}
+
+#[test]
+fn the_wheel_zooms_and_with_shift_exposes() {
+    let mut bench = bench();
+    let before = document(&bench).view;
+    turn_wheel(&mut bench, 1.0, Modifiers::NONE);
+    let nearer = document(&bench).view;
+    assert!(nearer.camera.distance < before.camera.distance);
+    assert_eq!(nearer.exposure_ev, before.exposure_ev);
+    turn_wheel(&mut bench, 2.0, Modifiers::SHIFT);
+    assert_eq!(document(&bench).view.exposure_ev, before.exposure_ev + 2.0 * navigation::EV_PER_NOTCH);
+    assert_eq!(document(&bench).view.camera, nearer.camera);
+}
+
+#[test]
+fn a_click_selects_what_is_there_and_names_it() {
+    let mut bench = bench();
+    let at = middle(&bench);
+    bench.drag_at(at);
+    bench.run_steps(1);
+    bench.drop_at(at);
+    bench.run_steps(2);
+    let session = &bench.state().session;
+    assert_eq!(session.selection.objects.len(), 1);
+    let text = overlay::selection_text(session);
+    assert!(text.contains(": "), "{text}");
+    bench.get_by_label(&text);
+    assert!(session.history().past().is_empty(), "a click is no edit");
+}
+
+#[test]
+fn a_preset_that_is_dropped_goes_on_the_material_under_it() {
+    let mut bench = bench();
+    let at = middle(&bench);
+    bench.drag_at(at);
+    bench.run_steps(1);
+    egui::DragAndDrop::set_payload(&bench.ctx, DraggedPreset("Cu".into()));
+    bench.hover_at(at + vec2(2.0, 0.0));
+    bench.run_steps(1);
+    bench.drop_at(at + vec2(2.0, 0.0));
+    bench.run_steps(2);
+    let bench = bench.state();
+    let entry = bench.session.material().unwrap();
+    assert_eq!(entry.preset.as_ref().map(|preset| preset.id.as_str()), Some("Cu"), "{:?}", bench.requests);
+    assert_eq!(bench.session.history().past().len(), 1);
+}
+
+#[test]
+fn a_pick_selects_shift_adds_and_nothing_deselects() {
+    let mut session = session();
+    let keys = session.resolved().object_keys.clone();
+    let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO });
+    select(&mut session, at(0), false);
+    assert_eq!(session.selection.objects, keys[..1]);
+    assert_eq!(session.selection.material, session.scene().instances[0].material);
+    select(&mut session, at(1), true);
+    assert_eq!(session.selection.objects, keys[..2]);
+    select(&mut session, at(0), true);
+    assert_eq!(session.selection.objects, keys[1..2]);
+    select(&mut session, None, true);
+    assert_eq!(session.selection.objects.len(), 1);
+    select(&mut session, None, false);
+    assert!(session.selection.objects.is_empty());
+}
+
+#[test]
+fn the_picture_says_what_it_shows() {
+    let mut session = session();
+    let all = session.scene().instances.len();
+    assert_eq!(summary_text(&session), format!("Viewport: workbench, {all} objects"));
+    let key = session.resolved().object_keys[0].clone();
+    session.edit("Hide", "", |document| document.edit_object(&key, |object| object.hidden = true));
+    assert!(summary_text(&session).contains(&format!("{} object", all - 1)));
+}

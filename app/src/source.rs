@@ -1,13 +1,14 @@
-//! SCENE arguments: a model file, or `gallery:NAME[?key=value&...]`.
+//! SCENE arguments: a model file, a document, or `gallery:NAME[?key=value&...]`.
 
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::sync::Arc;
 
+use burnish_core::document::{self, Curves, Document, Missing, Sources, resolve};
 use burnish_core::import::{self, ImportOptions};
 use burnish_core::scene::{Environment, Scene, gallery};
 
-use crate::failure::Failure;
+use crate::failure::{Exit, Failure};
 
 /// What is opened when no scene is named.
 pub const DEFAULT_SCENE: &str = "gallery:workbench";
@@ -15,7 +16,7 @@ pub const DEFAULT_SCENE: &str = "gallery:workbench";
 /// The scene that a command works on.
 #[derive(clap::Args)]
 pub struct SceneArg {
-    /// Model file (.gltf, .glb, .obj) or gallery:NAME[?key=value&...]
+    /// Model file (.gltf, .glb, .obj), document (.burnish) or gallery:NAME[?key=value&...]
     #[arg(default_value = DEFAULT_SCENE)]
     scene: OsString,
 }
@@ -27,18 +28,47 @@ pub struct Opened {
     pub notices: Vec<String>,
     /// Made by code, with a first camera that shows what the scene is about.
     pub from_gallery: bool,
+    /// The document that describes the scene, if it was one: its view and lighting count where no option says else.
+    pub document: Option<Document>,
+    /// Files of the document that something stands in for.
+    pub missing: Vec<Missing>,
 }
 
 impl SceneArg {
     pub fn open(&self) -> Result<Opened, Failure> {
         if let Some(name) = gallery_name(&self.scene) {
             let scene = gallery::open(name).map_err(|e| Failure::input(Path::new(&self.scene), e))?;
-            return Ok(Opened { scene, notices: Vec::new(), from_gallery: true });
+            return Ok(Opened { scene, notices: Vec::new(), from_gallery: true, document: None, missing: Vec::new() });
         }
         let path = Path::new(&self.scene);
+        if document::is_document(path) {
+            return open_document(path);
+        }
         let imported = import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
         let notices = imported.notices.iter().map(ToString::to_string).collect();
-        Ok(Opened { scene: imported.scene, notices, from_gallery: false })
+        let scene = imported.scene;
+        Ok(Opened { scene, notices, from_gallery: false, document: None, missing: Vec::new() })
+    }
+}
+
+fn open_document(path: &Path) -> Result<Opened, Failure> {
+    let document = Document::read(path).map_err(|e| Failure::input(path, e))?;
+    let document::Opened { document, sources, missing, mut notices } = document::reload(document, &Sources::default());
+    let resolved = resolve(&document, &sources, &mut Curves::default());
+    notices.extend(resolved.notices);
+    // Nothing else holds the scene.
+    let scene = Arc::unwrap_or_clone(resolved.scene);
+    Ok(Opened { scene, notices, from_gallery: false, document: Some(document), missing })
+}
+
+impl Opened {
+    /// Refuses a document whose files are missing: what stands in for them is for people who look.
+    pub fn complete(self) -> Result<Opened, Failure> {
+        if self.missing.is_empty() {
+            return Ok(self);
+        }
+        let line = |missing: &Missing| format!("{}: {}; relink it in the window", missing.path, missing.reason);
+        Err(Failure { exit: Exit::Input, messages: self.missing.iter().map(line).collect() })
     }
 }
 

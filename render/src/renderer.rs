@@ -83,6 +83,18 @@ impl Renderer {
 
     /// Draws the view and returns scene-linear radiance.
     pub fn render(&mut self, view: &View) -> Result<Picture, RenderError> {
+        let picture = self.render_while(view, |_| true)?;
+        // Nothing ends it early.
+        Ok(picture.unwrap_or_default())
+    }
+
+    /// Draws the view frame by frame; `going_on` hears the fraction done before each and ends the work by false. Waits
+    /// for each frame, so that others on the device get their turn.
+    pub fn render_while(
+        &mut self,
+        view: &View,
+        mut going_on: impl FnMut(f32) -> bool,
+    ) -> Result<Option<Picture>, RenderError> {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         check_size(gpu, view.size)?;
@@ -97,6 +109,9 @@ impl Renderer {
         };
         let frames = view.jitter_frames.max(1);
         for frame in 0..frames {
+            if !going_on(frame as f32 / frames as f32) {
+                return Ok(None);
+            }
             let jitter = Jitter { frame, frames };
             let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, &settings, jitter);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -106,14 +121,14 @@ impl Renderer {
             encoding.whole(&passes, &mut encoder, &self.resident, &targets);
             passes.accumulate.encode(gpu, &mut encoder, &targets.frame, &mut sums);
             gpu.queue.submit([encoder.finish()]);
-            gpu.check()?;
+            gpu.wait()?;
         }
         let bytes = read_texture(gpu, sums.texture(), 0, 0)?;
         self.targets = Some((targets, sums));
         let (floats, _) = bytes.as_chunks::<16>();
         let scale = 1.0 / frames as f32;
         let texels = floats.iter().map(|texel| bytemuck::pod_read_unaligned::<Vec4>(texel) * scale).collect();
-        Ok(Picture { width: view.size.x, height: view.size.y, texels })
+        Ok(Some(Picture { width: view.size.x, height: view.size.y, texels }))
     }
 }
 

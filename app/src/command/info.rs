@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use burnish_core::document::Missing;
 use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRole};
 use burnish_core::scene::{Camera, Light, LightKind, Projection, Scene, Texels};
 use serde::Serialize;
@@ -140,7 +141,7 @@ impl Info {
                 width: e.width,
                 height: e.height,
             }),
-            notices: opened.notices.clone(),
+            notices: opened.notices.iter().cloned().chain(opened.missing.iter().map(missing)).collect(),
         }
     }
 
@@ -185,6 +186,10 @@ impl Info {
         }
         Ok(())
     }
+}
+
+fn missing(file: &Missing) -> String {
+    format!("{} is missing and something stands in for it: {}", file.path, file.reason)
 }
 
 impl MaterialInfo {

@@ -7,6 +7,7 @@ mod measure;
 pub mod open;
 mod presets;
 mod render;
+mod snapshot;
 
 use std::io::Write;
 
@@ -24,6 +25,8 @@ pub enum Command {
     Info(info::Args),
     /// List the metal presets
     Presets(presets::Args),
+    /// Write a picture of a document, or of the whole window with it, and compare it with an earlier one
+    Snapshot(snapshot::Args),
     /// Measure how different two pictures are
     Compare(compare::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
@@ -38,6 +41,7 @@ impl Command {
             Command::Render(args) => render::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
+            Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),
             Command::Doctor => doctor::run(out),

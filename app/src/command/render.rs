@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::color::tone::ToneMap;
+use burnish_core::document::Document;
 use burnish_core::file::{PictureFormat, write_picture};
 use burnish_core::lighting::classical;
 use burnish_core::material::preset::{self, PresetError};
@@ -27,7 +28,7 @@ pub struct Args {
     /// Picture to write: .png (what a screen shows) or .exr (linear radiance)
     #[arg(long, value_name = "FILE", value_parser = value::picture_path)]
     out: PathBuf,
-    /// Environment map, .hdr or .exr [default: the scene's own, else a studio]
+    /// Environment map, .hdr or .exr [default: that of the document or scene, else a studio]
     #[arg(long, value_name = "FILE")]
     env: Option<PathBuf>,
     /// Metal for the material SLOT, a name or #index; for all without one; repeatable
@@ -45,13 +46,13 @@ pub struct Args {
     /// Pixels of the picture
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = value::size)]
     size: UVec2,
-    /// Eye and target in metres and the vertical angle in degrees [default: all in view; a gallery scene's first]
+    /// Eye and target in metres and the vertical angle in degrees [default: the document's view; of a model all; a gallery scene's first]
     #[arg(long, value_name = "NAME|#INDEX|EX,EY,EZ,TX,TY,TZ,FOV", value_parser = value::camera, allow_hyphen_values = true)]
     camera: Option<CameraChoice>,
-    /// Display transform of a .png: none, neutral, agx or aces [default: neutral]
+    /// Display transform of a .png: none, neutral, agx or aces [default: the document's, else neutral]
     #[arg(long, value_parser = str::parse::<ToneMap>)]
     tone: Option<ToneMap>,
-    /// Exposure of a .png in stops, -32 to 32 [default: 0]
+    /// Exposure of a .png in stops, -32 to 32 [default: the document's, else 0]
     #[arg(long, value_name = "EV", value_parser = value::number(-32.0, 32.0), allow_negative_numbers = true)]
     exposure: Option<f32>,
     /// Jittered frames that are averaged, 1 to 4096
@@ -73,8 +74,8 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
             "{file}: there is no folder {folder}; create it or choose another --out"
         )));
     }
-    let settings = settings(&args.set)?;
-    let Opened { mut scene, mut notices, from_gallery } = args.scene.open()?;
+    let Opened { mut scene, mut notices, from_gallery, document, .. } = args.scene.open()?.complete()?;
+    let settings = settings(&args.set, document.as_ref())?;
     if let Some(file) = &args.env {
         let (environment, more) = source::environment(file)?;
         scene.environment = Some(environment);
@@ -83,7 +84,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         scene.environment = Some(Arc::new(gallery::studio()));
     }
     notices.extend(set_materials(&mut scene, &args, &settings)?);
-    let camera = camera(&scene, &args, from_gallery)?;
+    let camera = camera(&scene, &args, from_gallery, document.as_ref())?;
     for notice in &notices {
         writeln!(err, "burnish: notice: {}", printable(notice))?;
     }
@@ -96,8 +97,10 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
     }
     let picture = renderer.render(&view).map_err(Failure::resources)?;
-    write_picture(&picture, &args.out, args.tone.unwrap_or_default(), args.exposure.unwrap_or(0.0))
-        .map_err(Failure::resources)?;
+    let stored = document.map(|document| document.view);
+    let tone = args.tone.or_else(|| stored.as_ref()?.tone.parse().ok()).unwrap_or_default();
+    let exposure_ev = args.exposure.or(stored.map(|view| view.exposure_ev as f32)).unwrap_or(0.0);
+    write_picture(&picture, &args.out, tone, exposure_ev).map_err(Failure::resources)?;
     let (UVec2 { x, y }, frames) = (args.size, args.spp_jitter);
     let (adapter, secs) = (&gpu.report().name, start.elapsed().as_secs_f32());
     writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", args.out.display())?;
@@ -113,8 +116,9 @@ fn settings_help() -> String {
     format!("Settings:\n{}", classical::PARAMS.iter().map(line).collect::<String>())
 }
 
-fn settings(list: &[(String, String)]) -> Result<Settings, Failure> {
-    let mut settings = Settings::new(classical::PARAMS);
+/// `--set` over what the document says.
+fn settings(list: &[(String, String)], document: Option<&Document>) -> Result<Settings, Failure> {
+    let mut settings = document.map_or_else(|| Settings::new(classical::PARAMS), |d| d.lighting.settings());
     for (key, text) in list {
         settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
     }
@@ -163,17 +167,21 @@ fn metal_failure(preset: &str, error: PresetError) -> Failure {
     }
 }
 
-fn camera(scene: &Scene, args: &Args, from_gallery: bool) -> Result<Camera, Failure> {
+fn camera(scene: &Scene, args: &Args, from_gallery: bool, document: Option<&Document>) -> Result<Camera, Failure> {
     match &args.camera {
         Some(CameraChoice::LookAt { eye, target, yfov }) => Ok(Camera::look_at("look at", *eye, *target, *yfov)),
         Some(CameraChoice::Of(pick)) => {
+            // Those that were saved in the document come first.
+            let saved = document.iter().flat_map(|document| &document.cameras).map(|entry| entry.camera());
+            let cameras: Vec<Camera> = saved.chain(scene.cameras.iter().cloned()).collect();
             let found = pick
-                .among("camera", scene.cameras.iter().map(|c| c.name.as_str()))
+                .among("camera", cameras.iter().map(|c| c.name.as_str()))
                 .map_err(|e| Failure::usage(format!("--camera: {e}; or give ex,ey,ez,tx,ty,tz,fov")))?;
-            Ok(scene.cameras[found[0]].clone())
+            Ok(cameras[found[0]].clone())
         }
-        None => Ok(match scene.cameras.first() {
-            Some(camera) if from_gallery => camera.clone(),
+        None => Ok(match (document, scene.cameras.first()) {
+            (Some(document), _) => document.view.camera.camera(),
+            (None, Some(camera)) if from_gallery => camera.clone(),
             _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
         }),
     }

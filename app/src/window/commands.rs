@@ -62,6 +62,8 @@ pub enum Command {
     Orthographic,
     /// Keeps the point of view.
     SaveCamera,
+    /// What importers said.
+    Notices,
     /// Shows a panel or puts it away.
     Panel(Pane),
     /// The palette.
@@ -227,6 +229,7 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::View, Command::ThemeLight, "Light theme", None, "A light window."),
     entry(Menu::View, Command::ThemeDark, "Dark theme", None, "A dark, neutral window: best for judging color."),
     entry(Menu::Help, Command::Palette, "Command palette", ctrl(Key::K), "Find any command by its name."),
+    entry(Menu::Help, Command::Notices, "Notices", None, "What was left out or repaired in the files that were read."),
     entry(Menu::Help, Command::Shortcuts, "Shortcuts", key(Key::F1), "All shortcuts and gestures."),
 ];
 
@@ -303,6 +306,7 @@ impl Command {
                 | Command::ThemeDark
                 | Command::ResetLayout
                 | Command::Palette
+                | Command::Notices
                 | Command::Shortcuts
         )
     }

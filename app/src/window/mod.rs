@@ -7,8 +7,10 @@
 mod commands;
 mod edits;
 mod files;
+mod icon;
 mod layout;
 mod native;
+pub mod offscreen;
 mod palette;
 mod panel;
 mod preferences;
@@ -17,7 +19,9 @@ mod session;
 mod shortcuts;
 mod stage;
 mod theme;
+mod thumbnails;
 mod toasts;
+mod user_presets;
 mod widget;
 mod workbench;
 

@@ -30,8 +30,10 @@ pub struct Session {
     pub selection: Selection,
     /// The copied material.
     pub clipboard: Option<Arc<MaterialEntry>>,
-    /// Files that could not be read, with the reason.
+    /// Files that the document refers to and that could not be read, with the reason.
     pub missing: Vec<Missing>,
+    /// All that could not be read since the document was opened.
+    unread: Vec<Missing>,
     /// Seconds of the window's clock, set once a frame.
     pub now_secs: f64,
     /// Counts every change of the document, for whoever wants to notice one.
@@ -55,6 +57,7 @@ impl Session {
             saved,
             selection: Selection::default(),
             clipboard: None,
+            unread: missing.clone(),
             missing,
             now_secs: 0.0,
             revision: 0,
@@ -124,23 +127,33 @@ impl Session {
     /// Takes over files that were read.
     pub fn edit_sources(&mut self, change: impl FnOnce(&mut Sources)) {
         change(&mut self.sources);
-        self.missing.retain(|missing| {
-            !self.sources.models.contains_key(&missing.path)
-                && !self.sources.environments.contains_key(&missing.path)
-                && !self.sources.images.contains_key(&missing.path)
-        });
         self.refresh();
     }
 
-    /// The document differs from its file.
+    /// The document differs from its file. Looking at something that has no file yet from another side is no change.
     pub fn is_dirty(&self) -> bool {
-        !Arc::ptr_eq(self.document(), &self.saved) && **self.document() != *self.saved
+        if Arc::ptr_eq(self.document(), &self.saved) || **self.document() == *self.saved {
+            return false;
+        }
+        self.path.is_some() || self.document().scene != self.saved.scene || {
+            let mut seen_alike = Document::clone(&self.saved);
+            seen_alike.view.camera = self.document().view.camera.clone();
+            seen_alike != **self.document()
+        }
     }
 
-    /// The document was written to `path` as it is now.
-    pub fn set_saved(&mut self, path: &Path) {
-        self.saved = self.document().clone();
+    /// This document, which was the current one when it was handed out, was written to `path`.
+    pub fn set_saved(&mut self, path: &Path, document: Arc<Document>) {
+        self.saved = document;
         self.path = Some(path.into());
+    }
+
+    /// Goes over to another document. The clipboard stays.
+    pub fn replace(&mut self, opened: Opened, path: Option<PathBuf>) {
+        let former = std::mem::replace(self, Session::new(opened, path));
+        self.clipboard = former.clipboard;
+        self.now_secs = former.now_secs;
+        self.revision = former.revision + 1;
     }
 
     /// The document has changes that no file holds, such as after a recovery.
@@ -200,6 +213,8 @@ impl Session {
     fn refresh(&mut self) {
         self.revision += 1;
         self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
+        let known = |missing: &Missing| self.unread.iter().find(|m| m.path == missing.path && m.kind == missing.kind);
+        self.missing = self.resolved.missing.iter().map(|missing| known(missing).unwrap_or(missing).clone()).collect();
         let materials = self.document().materials.len();
         self.selection.material = self.selection.material.min(materials.saturating_sub(1));
         self.selection.objects.retain(|key| self.resolved.object_keys.contains(key));

@@ -86,14 +86,13 @@ impl Toast {
         let content = |ui: &mut egui::Ui| {
             ui.set_max_width(WIDTH);
             let visuals = ui.visuals();
-            let (sign, color) = match self.is_error {
-                true => ("\u{26a0}", visuals.error_fg_color),
-                false => ("\u{2139}", visuals.weak_text_color()),
-            };
+            let color = if self.is_error { visuals.error_fg_color } else { visuals.weak_text_color() };
+            // In words too: a color alone says nothing to those who do not see it.
+            let sign = if self.is_error { "Error" } else { "Note" };
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(sign).color(color));
+                ui.label(RichText::new(sign).strong().color(color));
                 ui.vertical(|ui| {
-                    ui.set_max_width(WIDTH - 60.0);
+                    ui.set_max_width(WIDTH - 84.0);
                     let text = ui.label(&self.text);
                     ui.ctx().accesskit_node_builder(text.id, |node| {
                         node.set_live(if self.is_error { accesskit::Live::Assertive } else { accesskit::Live::Polite });

@@ -7,14 +7,16 @@ use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
 use super::commands::{Command, Entry, Menu, TABLE};
-use super::files::Files;
+use super::files::{Files, Folders};
 use super::palette::{Chosen, Palette};
-use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine};
+use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
+use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
+use super::user_presets::UserPresets;
 use super::{edits, layout, shortcuts, theme};
 
 /// How the window starts.
@@ -43,6 +45,8 @@ pub struct Workbench {
     status: StatusLine,
     requests: Requests,
     files: Files,
+    own: UserPresets,
+    thumbnails: Thumbnails,
     toasts: Toasts,
     palette: Option<Palette>,
     shortcut_page: bool,
@@ -51,10 +55,14 @@ pub struct Workbench {
 impl Workbench {
     /// The workbench as it is at first.
     pub fn new(ctx: &egui::Context, options: Options, stage: Stage) -> Workbench {
-        let scene = options.scene.clone().unwrap_or_else(|| document::DEFAULT_SCENE.into());
-        let opened =
-            document::open(&scene).unwrap_or_else(|_| document::reload(Default::default(), &Default::default()));
-        let preferences = Preferences::default();
+        let start = options.scene.is_none() && !options.recover;
+        // Scenes made by code are there at once; files are read by another thread while the default one is shown.
+        let scene = options.scene.as_deref().filter(|scene| scene.starts_with("gallery:"));
+        let made = scene.and_then(|scene| document::open(scene).ok());
+        let options = Options { scene: options.scene.filter(|_| made.is_none()), ..options };
+        let opened = made.or_else(|| document::open(document::DEFAULT_SCENE).ok());
+        let opened = opened.unwrap_or_else(|| document::reload(Default::default(), &Default::default()));
+        let (files, preferences) = Files::new(&options, &stage, ctx);
         theme::install(ctx);
         theme::apply(ctx, &preferences);
         Workbench {
@@ -64,10 +72,12 @@ impl Workbench {
             preferences,
             stage,
             panels: Panels::default(),
-            start: options.scene.is_none().then(StartPage::default),
+            start: start.then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
-            files: Files::default(),
+            own: UserPresets::new(files.folders().map(Folders::presets)),
+            thumbnails: Thumbnails::new(files.folders().map(Folders::thumbnails)),
+            files,
             toasts: Toasts::default(),
             palette: None,
             shortcut_page: false,
@@ -82,6 +92,22 @@ impl Workbench {
     /// What is open, for tests that edit beside the panels.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
+    }
+
+    /// Asks for something as a panel would; it is fulfilled in the next frame.
+    pub fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// A file is being read or written by another thread.
+    pub fn is_busy(&self) -> bool {
+        self.files.is_busy()
+    }
+
+    /// Goes over to another session, away from the start page.
+    pub fn set_session(&mut self, session: Session) {
+        self.session = session;
+        self.start = None;
     }
 
     /// The user's choices.
@@ -121,19 +147,46 @@ impl Workbench {
         self.session.now_secs = ui.input(|input| input.time);
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
-        let mut context = Context { session, preferences, stage, requests };
+        let Workbench {
+            session,
+            preferences,
+            stage,
+            panels,
+            tree,
+            start,
+            status,
+            requests,
+            files,
+            own,
+            thumbnails,
+            ..
+        } = self;
+        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes()) {
+            requests.push(Request::Error(fault));
+        }
+        for preset in own.frame(ui.ctx(), requests) {
+            requests.push(Request::AssignPreset { preset, materials: session.selected_materials() });
+        }
+        let mut context = Context { session, preferences, stage, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
+        if start.is_none() {
+            files.banner_ui(ui, &mut context);
+        }
         let middle = ui.available_rect_before_wrap();
-        egui::CentralPanel::no_frame().show(ui, |ui| match start {
-            Some(page) => page.ui(ui, &mut context),
+        let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
+        egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
+            Some(page) => {
+                if page.ui(ui, &mut context, files.is_modal()) {
+                    *start = None;
+                }
+            }
             None => {
                 let mut docked = Docked { panels, context: &mut context, rearranged: false };
                 tree.ui(&mut docked, ui);
                 self.rearranged |= docked.rearranged;
             }
         });
-        files.frame(ui, session, preferences, requests);
+        files.frame(ui, &mut context);
         self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());
@@ -168,9 +221,23 @@ impl Workbench {
     fn fulfil(&mut self, request: Request, ctx: &egui::Context) {
         match request {
             Request::Command(command) => self.command(command, ctx),
+            Request::ImportPreset(path) => {
+                self.start = None;
+                self.own.import(path);
+            }
+            Request::AssignPreset { preset, materials } => {
+                if let Err(fault) = assign(&mut self.session, &self.own, &preset, &materials) {
+                    self.requests.push(Request::Error(fault));
+                }
+            }
             Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
             Request::Error(text) => self.toasts.error(text, self.session.now_secs),
-            about_files => self.files.fulfil(about_files, &mut self.session, &mut self.preferences, ctx),
+            about_files => {
+                if !matches!(about_files, Request::PickFile(_) | Request::WriteRecovery) {
+                    self.start = None;
+                }
+                self.files.fulfil(about_files, &mut self.session, ctx);
+            }
         }
         // An answer is shown in the next frame.
         if !self.requests.is_empty() {
@@ -211,7 +278,8 @@ impl Workbench {
             | Command::Save
             | Command::SaveAs
             | Command::SaveImage
-            | Command::Quit => self.files.command(command, &mut self.session, &mut self.preferences, ctx),
+            | Command::Notices
+            | Command::Quit => self.files.command(command, &mut self.session, &self.stage, ctx),
             Command::Frame
             | Command::FrameAll
             | Command::ViewFront

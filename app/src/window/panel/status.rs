@@ -55,11 +55,15 @@ fn picture(status: &Status) -> Vec<(String, &'static str)> {
         (true, None) => "sharp".into(),
         (false, None) => format!("frame {} of {SHARP}", drawn.frames),
     };
-    vec![
+    let mut items = vec![
         (format!("{:.0} ms", status.frame_ms), "Time of the last frame that showed a change, milliseconds."),
         (format!("{:.0} %", 100.0 * share), "Width of what was drawn as a part of the viewport's."),
         (progress, "Frames in the picture: it sharpens while nothing changes."),
-    ]
+    ];
+    if status.fixed_clock {
+        items.remove(0);
+    }
+    items
 }
 
 fn triangles(scene: &Scene) -> String {

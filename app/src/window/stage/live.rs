@@ -57,6 +57,12 @@ impl Live {
         }
     }
 
+    /// Tells no times, so that the window looks the same each time: for snapshots.
+    pub fn with_fixed_clock(mut self) -> Live {
+        self.status.fixed_clock = true;
+        self
+    }
+
     /// Draws what is due.
     pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
         if std::mem::take(&mut self.first) {

@@ -56,6 +56,8 @@ pub struct Status {
     pub adapter: String,
     /// It is a software rasterizer.
     pub software: bool,
+    /// Nothing is timed, so that the window looks the same each time: for snapshots.
+    pub fixed_clock: bool,
 }
 
 impl Stage {

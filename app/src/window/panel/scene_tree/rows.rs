@@ -111,7 +111,9 @@ fn named(name: &str) -> &str {
 /// A row of a list that takes the width up to `reserved`.
 fn name_ui(ui: &mut egui::Ui, text: RichText, selected: bool, reserved: f32) -> egui::Response {
     let width = (ui.available_width() - reserved).max(24.0);
-    let button = egui::Button::selectable(selected, text).truncate().min_size(egui::vec2(width, HEIGHT));
+    // Text on the right, though empty, keeps the name on the left.
+    let button = egui::Button::selectable(selected, text).truncate().right_text("");
+    let button = button.min_size(egui::vec2(width, HEIGHT));
     ui.allocate_ui(egui::vec2(width, HEIGHT), |ui| ui.add(button)).inner
 }
 
@@ -122,8 +124,7 @@ fn object_ui(ui: &mut egui::Ui, object: usize, session: &Session, actions: &mut 
     };
     let name = named(&instance.name);
     let verb = if instance.visible { "Hide" } else { "Show" };
-    let eye = RichText::new(if instance.visible { "\u{1f441}" } else { "\u{2013}" }).weak();
-    let eye = ui.add_sized([EYE_WIDTH, HEIGHT], egui::Button::new(eye).frame(false));
+    let eye = eye_ui(ui, instance.visible);
     eye.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{verb} {name}")));
     if eye.on_hover_text(format!("{verb} this object")).clicked() {
         actions.push(Action::Toggle(object));
@@ -145,6 +146,28 @@ fn object_ui(ui: &mut egui::Ui, object: usize, session: &Session, actions: &mut 
     if combo_width > 0.0 {
         combo_ui(ui, object, session, combo_width, actions);
     }
+}
+
+/// An open or a closed eye to click.
+fn eye_ui(ui: &mut egui::Ui, open: bool) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(EYE_WIDTH, HEIGHT), egui::Sense::click());
+    let visuals = ui.style().interact(&response);
+    let shade = if open || response.hovered() { 1.0 } else { 0.6 };
+    let stroke = egui::Stroke::new(1.2, visuals.fg_stroke.color.gamma_multiply(shade));
+    let (center, half) = (rect.center(), egui::vec2(6.0, 3.5));
+    let lid = |up: f32| {
+        let point = |i: u8| {
+            let x = f32::from(i) / 6.0 - 1.0;
+            center + egui::vec2(half.x * x, up * half.y * (1.0 - x * x))
+        };
+        egui::Shape::line((0..=12).map(point).collect(), stroke)
+    };
+    ui.painter().add(lid(1.0));
+    if open {
+        ui.painter().add(lid(-1.0));
+        ui.painter().circle_filled(center, 2.0, stroke.color);
+    }
+    response
 }
 
 /// The material of an object.

@@ -1,0 +1,118 @@
+//! The picture as a file: its settings, and the job that renders it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::file::write_picture;
+use burnish_core::job::{Handle, Job};
+use burnish_render::{Gpu, Passes, Renderer, View};
+use eframe::egui;
+use glam::UVec2;
+
+use super::load::name_of;
+use crate::window::session::Session;
+
+/// Most pixels on a side, as on the command line.
+const MAX_SIDE: u32 = 8192;
+/// Most pixels.
+const MAX_PIXELS: u32 = 1 << 24;
+/// Where there is no viewport to take the size of.
+const DEFAULT_SIZE: UVec2 = UVec2::new(1920, 1080);
+
+/// How a picture is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageSettings {
+    size: UVec2,
+    /// Jittered frames that are averaged.
+    frames: u32,
+    /// Size of the viewport.
+    natural: UVec2,
+}
+
+impl ImageSettings {
+    /// A picture of the viewport's size.
+    pub fn new(viewport: Option<UVec2>) -> ImageSettings {
+        let natural = viewport.filter(|size| size.min_element() > 0).unwrap_or(DEFAULT_SIZE);
+        ImageSettings { size: natural, frames: 16, natural }
+    }
+
+    /// Shows the settings.
+    pub fn ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let mut side = |label: &str, value: &mut u32| {
+                let label = ui.label(label);
+                let drag = egui::DragValue::new(value).range(1..=MAX_SIDE).speed(4.0).suffix(" px");
+                ui.add(drag).labelled_by(label.id).on_hover_text("Pixels of the picture");
+            };
+            side("Width", &mut self.size.x);
+            side("Height", &mut self.size.y);
+            for (name, factor) in [("1x", 1), ("2x", 2), ("4x", 4)] {
+                let size = self.natural * factor;
+                let possible = size.max_element() <= MAX_SIDE && size.x * size.y <= MAX_PIXELS;
+                let hover = format!("{} x {} pixels, from the viewport", size.x, size.y);
+                if ui.add_enabled(possible, egui::Button::new(name).small()).on_hover_text(hover).clicked() {
+                    self.size = size;
+                }
+            }
+        });
+        ui.horizontal(|ui| {
+            let label = ui.label("Frames");
+            let drag = egui::DragValue::new(&mut self.frames).range(1..=1024).speed(0.5);
+            ui.add(drag)
+                .labelled_by(label.id)
+                .on_hover_text("Frames, each moved by a part of a pixel, that are averaged");
+        });
+        // Kept within what an adapter takes, at the same width.
+        self.size.y = self.size.y.min(MAX_PIXELS / self.size.x.max(1)).max(1);
+        ui.weak(".png: as on the screen, with its view transform noted.  .exr: linear radiance.");
+    }
+}
+
+/// Starts to render the document's view into a file, on the window's device where there is one.
+pub fn render(
+    session: &Session,
+    passes: Option<&Arc<Passes>>,
+    settings: ImageSettings,
+    path: PathBuf,
+    ctx: &egui::Context,
+) -> Job<Result<String, String>> {
+    let (document, scene) = (session.document(), session.scene().clone());
+    let view = View {
+        size: settings.size,
+        camera: document.view.camera.camera(),
+        settings: document.lighting.settings(),
+        jitter_frames: settings.frames,
+    };
+    let (tone, exposure_ev) = (document.view.tone.parse().unwrap_or_default(), document.view.exposure_ev as f32);
+    let (passes, waker) = (passes.cloned(), ctx.clone());
+    let label = format!("Rendering {}", name_of(&path.to_string_lossy()));
+    let progress = ctx.clone();
+    let work = move |handle: &Handle| {
+        let passes = match passes {
+            Some(passes) => passes,
+            None => Arc::new(Passes::new(&Gpu::new().map_err(|e| e.to_string())?)),
+        };
+        let mut renderer = Renderer::with_passes(&passes, &scene).map_err(|e| e.to_string())?;
+        let going_on = |fraction: f32| {
+            handle.set_progress(fraction);
+            progress.request_repaint();
+            !handle.is_cancelled()
+        };
+        let Some(picture) = renderer.render_while(&view, going_on).map_err(|e| e.to_string())? else {
+            return Ok(String::new());
+        };
+        write(&picture, &path, tone, exposure_ev)
+    };
+    Job::spawn(label, move || waker.request_repaint(), work)
+}
+
+fn write(
+    picture: &burnish_core::picture::Picture,
+    path: &Path,
+    tone: ToneMap,
+    exposure_ev: f32,
+) -> Result<String, String> {
+    write_picture(picture, path, tone, exposure_ev).map_err(|e| e.to_string())?;
+    Ok(format!("Wrote {} ({} x {} pixels)", path.display(), picture.width, picture.height))
+}

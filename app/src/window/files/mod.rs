@@ -1,0 +1,439 @@
+//! Files of the window: open, save, dialogs, recovery, what changed on disk.
+//!
+//! All work on files is done by other threads; [`Files::frame`] takes over what they finished.
+
+mod dialog;
+mod drop;
+mod folders;
+mod image;
+mod load;
+mod notices;
+mod recovery;
+mod save;
+mod store;
+#[cfg(test)]
+mod tests;
+mod watch;
+
+use std::path::{Path, PathBuf};
+
+use burnish_core::job::{Job, Outcome};
+use eframe::egui;
+
+use super::commands::Command;
+use super::panel::Context;
+use super::preferences::Preferences;
+use super::request::{Purpose, Request, Requests};
+use super::session::Session;
+use super::stage::Stage;
+use super::workbench::Options;
+use dialog::{Answer, Ask, Dialog};
+use drop::Pending;
+use image::ImageSettings;
+use load::{Landing, Loads, Notices};
+use recovery::{Found, Recovery, Scan, Snapshot};
+use save::{Choice, Next, Saving};
+use store::Store;
+use watch::Watch;
+
+pub use dialog::typed_path;
+pub use folders::Folders;
+
+/// Jobs and dialogs about files.
+#[derive(Default)]
+pub struct Files {
+    folders: Option<Folders>,
+    store: Option<Store>,
+    loads: Loads,
+    saving: Option<Saving>,
+    dialog: Option<Dialog>,
+    guard: Option<Next>,
+    picture: Option<Job<Result<String, String>>>,
+    dropped: Vec<Pending>,
+    notices: Notices,
+    shows_notices: bool,
+    recovery: Recovery,
+    scanning: Option<Job<Scan>>,
+    /// Takes up what is found without a question.
+    recovers: bool,
+    offered: Vec<Found>,
+    watch: Watch,
+    /// Missing files that the user has seen and put away.
+    put_away: Vec<String>,
+    /// Revision of the session that was handed to the recovery file.
+    kept_revision: Option<u64>,
+    title: String,
+    quitting: bool,
+    /// Wishes of other threads for the next frame.
+    outbox: Requests,
+}
+
+impl Files {
+    /// Files of a window as it starts, with the user's choices. A flat stage without a folder of its own keeps nothing.
+    pub fn new(options: &Options, stage: &Stage, ctx: &egui::Context) -> (Files, Preferences) {
+        let folders = match &options.data_folder {
+            Some(folder) => Some(Folders::within(folder)),
+            None if matches!(stage, Stage::Flat) => None,
+            None => Folders::of_user(),
+        };
+        let mut files = Files { folders, recovers: options.recover, ..Files::default() };
+        let mut preferences = Preferences::default();
+        if let Some(folders) = &files.folders {
+            let (read, notice) = Preferences::read(&folders.preferences());
+            files.outbox.extend(notice.map(Request::Error));
+            files.store = Some(Store::new(folders.preferences(), &read));
+            preferences = read;
+            let (folder, waker, patient) = (folders.recovery(), ctx.clone(), options.recover);
+            files.recovery = Recovery::new(folder.clone());
+            let work = move |_: &_| recovery::scan(&folder, patient);
+            files.scanning = Some(Job::spawn("Looking for unsaved work", move || waker.request_repaint(), work));
+        }
+        if let Some(scene) = &options.scene {
+            files.loads.push(load::scene(scene.clone()));
+        }
+        if let Some(map) = &options.environment {
+            files.loads.push(load::environment(map));
+        }
+        (files, preferences)
+    }
+
+    /// Folders of the user; `None` where nothing is kept.
+    pub fn folders(&self) -> Option<&Folders> {
+        self.folders.as_ref()
+    }
+
+    /// A dialog has the keyboard, or a document is being read: commands wait.
+    pub fn is_modal(&self) -> bool {
+        let asks =
+            self.dialog.is_some() || self.guard.is_some() || !self.dropped.is_empty() || !self.offered.is_empty();
+        asks || self.loads.is_exclusive()
+    }
+
+    /// A file is being read or written.
+    pub fn is_busy(&self) -> bool {
+        self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
+    }
+
+    /// Writes the document, saved or not, into the recovery file and waits for it: for when the program is about to end badly.
+    pub fn keep_now(&mut self, session: &Session) -> Result<(), String> {
+        self.kept_revision = Some(session.revision);
+        self.recovery.write_now(&snapshot(session))
+    }
+
+    /// Looks at running jobs and shows open dialogs; once a frame.
+    pub fn frame(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let ctx = &ui.ctx().clone();
+        self.close_requested(context.session, ctx);
+        self.advance(context, ctx);
+        self.keep(context, ctx);
+        let Files { outbox, dropped, .. } = self;
+        dropped.extend(drop::take(ctx, context.session, outbox));
+        self.dialogs_ui(context, ctx);
+        drop::hover_ui(ctx, context.session);
+        self.work_ui(ctx);
+        notices::window_ui(ctx, &mut self.shows_notices, &self.notices);
+        if !self.outbox.is_empty() {
+            context.requests.append(&mut self.outbox);
+            ctx.request_repaint();
+        }
+    }
+
+    /// What must be seen above the panels: changed and missing files.
+    pub fn banner_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let changed = self.watch.changed();
+        let missing: Vec<_> =
+            context.session.missing.iter().filter(|missing| !self.put_away.contains(&missing.path)).cloned().collect();
+        for action in notices::banner_ui(ui, &changed, &missing) {
+            match action {
+                notices::Action::Reload(path) => match load::kind_of(context.session.document(), &path) {
+                    Some(kind) => self.loads.push(load::changed(kind, path)),
+                    None => self.watch.ignore(&path),
+                },
+                notices::Action::Ignore(path) => self.watch.ignore(&path),
+                notices::Action::Relink(missing) => self.open_dialog(Ask::Relink(missing), context.session),
+                notices::Action::PutAway(path) => self.put_away.push(path),
+            }
+        }
+    }
+
+    /// Fulfils a request about a file.
+    pub fn fulfil(&mut self, request: Request, session: &mut Session, ctx: &egui::Context) {
+        match request {
+            Request::OpenScene(scene) => self.leave(Next::Open(scene), session, ctx),
+            Request::LoadEnvironment(path) => self.loads.push(load::environment(&path)),
+            Request::LoadTexture { material, role, path } => {
+                if let Some(entry) = session.document().materials.get(material) {
+                    self.loads.push(load::texture(entry.name.clone(), role, &path));
+                }
+            }
+            Request::Relink { missing, path } => {
+                self.loads.push(load::relinked(missing, &path, session.missing.clone()));
+            }
+            Request::PickFile(purpose) => {
+                let ask = match purpose {
+                    Purpose::Scene => Some(Ask::Scene),
+                    Purpose::Environment => Some(Ask::Environment),
+                    Purpose::Texture { material, role } => Some(Ask::Texture { material, role }),
+                    Purpose::Preset => Some(Ask::Preset),
+                    Purpose::Missing { index, .. } => session.missing.get(index).cloned().map(Ask::Relink),
+                };
+                if let Some(ask) = ask {
+                    self.open_dialog(ask, session);
+                }
+            }
+            Request::WriteRecovery => {
+                let fault = self.keep_now(session).err();
+                self.outbox.extend(fault.map(Request::Error));
+            }
+            // Not about files of the document.
+            Request::Command(_)
+            | Request::Notice(_)
+            | Request::Error(_)
+            | Request::AssignPreset { .. }
+            | Request::ImportPreset(_) => {}
+        }
+        ctx.request_repaint();
+    }
+
+    /// Does a command about files.
+    pub fn command(&mut self, command: Command, session: &mut Session, stage: &Stage, ctx: &egui::Context) {
+        match command {
+            Command::Open => self.open_dialog(Ask::Scene, session),
+            Command::LoadEnvironment => self.open_dialog(Ask::Environment, session),
+            Command::Save => self.save(session, None, ctx),
+            Command::SaveAs => self.open_dialog(Ask::SaveAs(None), session),
+            Command::SaveImage => {
+                let size = stage.status().map(|status| status.size);
+                self.open_dialog(Ask::SaveImage(ImageSettings::new(size)), session);
+            }
+            Command::Notices => self.shows_notices = true,
+            Command::Quit => self.leave(Next::Quit, session, ctx),
+            _ => {}
+        }
+        ctx.request_repaint();
+    }
+
+    fn open_dialog(&mut self, ask: Ask, session: &Session) {
+        let path = match &ask {
+            Ask::SaveAs(_) => beside(session, "burnish"),
+            Ask::SaveImage(_) => beside(session, "png"),
+            Ask::Relink(missing) => missing.path.clone(),
+            Ask::Scene | Ask::Environment | Ask::Texture { .. } | Ask::Preset => String::new(),
+        };
+        self.dialog = Some(Dialog::new(ask, path));
+    }
+
+    /// Leaves the document for something else, after a question where it has unsaved changes.
+    fn leave(&mut self, next: Next, session: &Session, ctx: &egui::Context) {
+        if session.is_dirty() {
+            self.guard = Some(next);
+        } else {
+            self.go_on(next, ctx);
+        }
+    }
+
+    fn go_on(&mut self, next: Next, ctx: &egui::Context) {
+        match next {
+            Next::Open(scene) => self.loads.push(load::scene(scene)),
+            Next::Quit => {
+                self.quitting = true;
+                self.recovery.finish();
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+        }
+        ctx.request_repaint();
+    }
+
+    /// Saves under the known path, or asks for one.
+    fn save(&mut self, session: &Session, next: Option<Next>, ctx: &egui::Context) {
+        match &session.path {
+            Some(path) => self.saving = Some(Saving::start(session, path, next, ctx)),
+            None => self.open_dialog(Ask::SaveAs(next), session),
+        }
+    }
+
+    /// The window is about to close.
+    fn close_requested(&mut self, session: &Session, ctx: &egui::Context) {
+        if self.quitting || !ctx.input(|input| input.viewport().close_requested()) {
+            return;
+        }
+        if session.is_dirty() || self.saving.is_some() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.guard = Some(Next::Quit);
+        } else {
+            self.go_on(Next::Quit, ctx);
+        }
+    }
+
+    /// Takes over what other threads finished.
+    fn advance(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
+        let Files { loads, watch, outbox, notices, recovery, .. } = self;
+        let (session, preferences) = (&mut *context.session, &mut *context.preferences);
+        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, notices }, ctx);
+        if let Some(result) = self.saving.as_mut().and_then(|saving| saving.advance(context.session)) {
+            self.saving = None;
+            match result {
+                Ok((path, next)) => {
+                    self.outbox.push(Request::Notice(format!("Saved {}", path.display())));
+                    context.preferences.remember(&load::known_path(&path));
+                    self.kept_revision = None;
+                    if let Some(next) = next {
+                        self.leave(next, context.session, ctx);
+                    }
+                }
+                Err(reason) => self.outbox.push(Request::Error(reason)),
+            }
+        }
+        self.advance_picture();
+        if let Some(job) = &mut self.scanning
+            && let Outcome::Done(scan) = job.poll()
+        {
+            self.scanning = None;
+            self.scanned(scan);
+        }
+        self.watch.wake(ctx);
+    }
+
+    fn advance_picture(&mut self) {
+        let Some(job) = &mut self.picture else { return };
+        let failed = format!("{} ended unexpectedly; try a smaller picture", job.label);
+        let request = match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(words)) => Request::Notice(words),
+            Outcome::Done(Err(reason)) => Request::Error(reason),
+            Outcome::Failed => Request::Error(failed),
+        };
+        self.picture = None;
+        self.outbox.push(request);
+    }
+
+    fn scanned(&mut self, scan: Scan) {
+        for aside in scan.damaged {
+            let aside = aside.display();
+            self.outbox.push(Request::Error(format!("a damaged recovery file was set aside as {aside}")));
+        }
+        self.offered = scan.found;
+        if std::mem::take(&mut self.recovers) && !self.offered.is_empty() {
+            let newest = self.offered.remove(0);
+            self.offered.clear();
+            self.recover(newest);
+        }
+    }
+
+    fn recover(&mut self, found: Found) {
+        self.loads.push(load::recovered(found));
+    }
+
+    /// Keeps on disk what must last: the user's choices and unsaved edits.
+    fn keep(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
+        let session = &*context.session;
+        if let Some(store) = &mut self.store {
+            self.outbox.extend(store.keep(context.preferences, self.quitting).map(Request::Error));
+        }
+        self.outbox.extend(self.recovery.take_error().map(Request::Error));
+        if self.kept_revision != Some(session.revision) && !self.quitting {
+            self.kept_revision = Some(session.revision);
+            if session.is_dirty() {
+                self.recovery.keep(snapshot(session));
+            } else {
+                self.recovery.forget();
+            }
+            let title = format!("{}{} - Burnish", session.title(), if session.is_dirty() { "*" } else { "" });
+            if self.title != title {
+                ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+                self.title = title;
+            }
+        }
+    }
+
+    fn dialogs_ui(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
+        if let Some(next) = self.guard.clone()
+            && let Some(choice) = save::guard_ui(ctx, &context.session.title(), &next)
+        {
+            self.guard = None;
+            match choice {
+                Choice::Save => self.save(context.session, Some(next), ctx),
+                Choice::Discard => self.go_on(next, ctx),
+                Choice::Cancel => {}
+            }
+        }
+        if let Some(dialog) = &mut self.dialog {
+            match dialog.ui(ctx, context.preferences) {
+                Answer::None => {}
+                Answer::Cancelled => self.dialog = None,
+                Answer::Path(ask, path) => {
+                    self.dialog = None;
+                    self.answered(ask, path, context, ctx);
+                }
+            }
+        }
+        if let Some(pending) = self.dropped.first()
+            && let Some(answer) = drop::slot_ui(ctx, pending, context.session)
+        {
+            self.outbox.extend(answer);
+            self.dropped.remove(0);
+        }
+        // Not above another question.
+        if self.guard.is_none() && self.dialog.is_none() && !self.loads.is_exclusive() {
+            match self.offered.first().and_then(|found| notices::offer_ui(ctx, found)) {
+                Some(notices::Offer::Recover) => {
+                    let found = self.offered.remove(0);
+                    self.offered.clear();
+                    self.recover(found);
+                }
+                Some(notices::Offer::Discard) => self.offered.remove(0).discard(),
+                Some(notices::Offer::Later) => self.offered.clear(),
+                None => {}
+            }
+        }
+    }
+
+    fn answered(&mut self, ask: Ask, path: PathBuf, context: &mut Context<'_>, ctx: &egui::Context) {
+        match ask {
+            Ask::Scene => self.outbox.push(Request::OpenScene(path.to_string_lossy().into_owned())),
+            Ask::Environment => self.outbox.push(Request::LoadEnvironment(path)),
+            Ask::Texture { material, role } => self.outbox.push(Request::LoadTexture { material, role, path }),
+            Ask::Preset => self.outbox.push(Request::ImportPreset(path)),
+            Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
+            Ask::SaveAs(next) => self.saving = Some(Saving::start(context.session, &path, next, ctx)),
+            Ask::SaveImage(settings) => {
+                self.picture = Some(image::render(context.session, context.stage.passes(), settings, path, ctx));
+            }
+        }
+        ctx.request_repaint();
+    }
+
+    /// Shows what is being done, with the means to end it.
+    fn work_ui(&mut self, ctx: &egui::Context) {
+        if self.loads.is_exclusive() {
+            let label = self.loads.label().unwrap_or_default().to_string();
+            if notices::loading_ui(ctx, &label) {
+                self.loads.cancel();
+            }
+        }
+        let reading = self.loads.label().filter(|_| !self.loads.is_exclusive()).map(|label| (label.to_string(), None));
+        let drawing = self.picture.as_ref().map(|job| (job.label.clone(), Some(job.progress())));
+        let works: Vec<_> = drawing.into_iter().chain(reading).collect();
+        match notices::work_ui(ctx, &works) {
+            Some(label) if self.loads.label() == Some(label.as_str()) => self.loads.cancel(),
+            Some(label) => {
+                self.picture = None;
+                self.outbox.push(Request::Notice(format!("{label}: cancelled")));
+            }
+            None => {}
+        }
+    }
+}
+
+fn snapshot(session: &Session) -> Snapshot {
+    Snapshot { document: session.document().clone(), path: session.path.clone() }
+}
+
+/// A path with another ending beside the document, else beside its model, else in the current folder.
+fn beside(session: &Session, ending: &str) -> String {
+    let scene = &session.document().scene;
+    let model = Some(Path::new(scene)).filter(|_| !scene.starts_with("gallery:"));
+    let folder = session.path.as_deref().or(model).and_then(Path::parent).map(Path::to_path_buf);
+    let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+    folder.join(format!("{}.{ending}", session.title())).to_string_lossy().into_owned()
+}

@@ -1,0 +1,444 @@
+//! What would be lost in a crash: unsaved documents are written into a folder of the program while they are edited.
+//!
+//! Each running window owns one file `ID.json` with a locked companion `ID.lock`. A file whose lock is free belongs to
+//! a program that did not end by itself. A thread writes, the window only hands it documents.
+
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use burnish_core::document::{Document, MAX_BYTES};
+use burnish_core::file::{read_bounded, write_atomic};
+use serde_json::{Map, Value};
+
+/// Value of the field `format`.
+const FORMAT: &str = "burnish-recovery";
+/// Edits are collected this long: a drag is many of them.
+const DELAY: Duration = Duration::from_secs(1);
+/// The file is written at most this often.
+const PAUSE: Duration = Duration::from_secs(3);
+/// How long `--recover` waits for the program before to end.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Writes the recovery file of this window.
+#[derive(Default)]
+pub struct Recovery {
+    shared: Option<Arc<Shared>>,
+}
+
+struct Shared {
+    folder: PathBuf,
+    slot: Mutex<Slot>,
+    changed: Condvar,
+    /// Held while the file is written, so that an older document never takes the place of a newer one.
+    file: Mutex<Option<Owned>>,
+}
+
+#[derive(Default)]
+struct Slot {
+    /// The newest document that no file holds.
+    wanted: Option<Snapshot>,
+    /// The file is not needed: everything is saved.
+    clean: bool,
+    /// Files of a former run that are open now; to be removed once they are written anew.
+    adopted: Vec<Found>,
+    error: Option<String>,
+    end: bool,
+}
+
+/// The file of this window. The lock lasts as long as the program, however it ends.
+struct Owned {
+    path: PathBuf,
+    lock_path: PathBuf,
+    _lock: File,
+}
+
+/// An unsaved document.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// As it is.
+    pub document: Arc<Document>,
+    /// Where it was saved before.
+    pub path: Option<PathBuf>,
+}
+
+/// What a program left that did not end by itself.
+#[derive(Debug)]
+pub struct Found {
+    path: PathBuf,
+    lock_path: PathBuf,
+    _lock: File,
+    /// Name of the document for people.
+    pub title: String,
+    /// When it was written.
+    pub time: SystemTime,
+    snapshot: Snapshot,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // A panic of a writer leaves a whole file and a whole slot.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Recovery {
+    /// Keeps the recovery file in a folder, which is created when it is needed.
+    pub fn new(folder: PathBuf) -> Recovery {
+        let shared =
+            Arc::new(Shared { folder, slot: Mutex::default(), changed: Condvar::new(), file: Mutex::default() });
+        let writer = shared.clone();
+        std::thread::spawn(move || write_until_the_end(&writer));
+        Recovery { shared: Some(shared) }
+    }
+
+    /// Hands over the newest document; it is on the disk some seconds later.
+    pub fn keep(&self, snapshot: Snapshot) {
+        self.change(|slot| {
+            slot.wanted = Some(snapshot);
+            slot.clean = false;
+        });
+    }
+
+    /// Everything is saved: removes the file.
+    pub fn forget(&self) {
+        self.change(|slot| {
+            slot.wanted = None;
+            slot.clean = true;
+        });
+    }
+
+    /// Removes the file of a former run as soon as its document is in the file of this one.
+    pub fn adopt(&self, found: Found) {
+        self.change(|slot| slot.adopted.push(found));
+    }
+
+    /// What went wrong at the last attempt to write; each failure is told once.
+    pub fn take_error(&self) -> Option<String> {
+        lock(&self.shared.as_ref()?.slot).error.take()
+    }
+
+    /// Writes a document now and waits for it: for when the program is about to end badly.
+    pub fn write_now(&self, snapshot: &Snapshot) -> Result<(), String> {
+        let Some(shared) = &self.shared else { return Ok(()) };
+        lock(&shared.slot).wanted = None;
+        shared.write(snapshot)
+    }
+
+    /// The program ends well: nothing stays. Waits for a file that is just being written.
+    pub fn finish(&mut self) {
+        if let Some(shared) = self.shared.take() {
+            shared.end();
+            shared.remove();
+        }
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Slot)) {
+        if let Some(shared) = &self.shared {
+            change(&mut lock(&shared.slot));
+            shared.changed.notify_all();
+        }
+    }
+}
+
+impl Drop for Recovery {
+    fn drop(&mut self) {
+        if let Some(shared) = &self.shared {
+            shared.end();
+        }
+    }
+}
+
+fn write_until_the_end(shared: &Shared) {
+    let mut written: Option<Instant> = None;
+    loop {
+        let idle = |slot: &mut Slot| !slot.end && slot.wanted.is_none() && !slot.clean;
+        let slot = shared.changed.wait_while(lock(&shared.slot), idle).unwrap_or_else(PoisonError::into_inner);
+        let rest = written.map_or(Duration::ZERO, |time| PAUSE.saturating_sub(time.elapsed()));
+        let pause = if slot.clean { Duration::ZERO } else { rest.max(DELAY) };
+        let going_on = |slot: &mut Slot| !slot.end && !slot.clean;
+        let waited = shared.changed.wait_timeout_while(slot, pause, going_on);
+        let (mut slot, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        if slot.end {
+            return;
+        }
+        let (wanted, clean) = (slot.wanted.take(), std::mem::take(&mut slot.clean));
+        drop(slot);
+        if clean {
+            shared.remove();
+        }
+        let Some(snapshot) = wanted else { continue };
+        let result = shared.write(&snapshot);
+        written = Some(Instant::now());
+        let mut slot = lock(&shared.slot);
+        match result {
+            Ok(()) => std::mem::take(&mut slot.adopted).into_iter().for_each(Found::discard),
+            Err(reason) => slot.error = Some(reason),
+        }
+    }
+}
+
+impl Shared {
+    fn end(&self) {
+        lock(&self.slot).end = true;
+        self.changed.notify_all();
+    }
+
+    fn write(&self, snapshot: &Snapshot) -> Result<(), String> {
+        let mut file = lock(&self.file);
+        if file.is_none() {
+            *file = Some(Owned::new(&self.folder)?);
+        }
+        let Some(Owned { path, .. }) = &*file else { return Ok(()) };
+        write_atomic(path, text(snapshot, SystemTime::now()).as_bytes()).map_err(|e| {
+            format!("the recovery file cannot be written: {e}; save the document yourself until that is mended")
+        })
+    }
+
+    fn remove(&self) {
+        if let Some(Owned { path, lock_path, .. }) = lock(&self.file).take() {
+            remove(&path, &lock_path);
+        }
+    }
+}
+
+impl Owned {
+    fn new(folder: &Path) -> Result<Owned, String> {
+        let fault = |e: std::io::Error| {
+            let folder = folder.display();
+            format!(
+                "no recovery file can be kept in {folder} ({e}); make that folder writable, and save often until then"
+            )
+        };
+        fs::create_dir_all(folder).map_err(fault)?;
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let id = format!("{:x}-{:x}", since.as_millis(), std::process::id());
+        let (path, lock_path) = (folder.join(format!("{id}.json")), folder.join(format!("{id}.lock")));
+        let lock = File::create(&lock_path).map_err(fault)?;
+        lock.try_lock().map_err(|e| fault(e.into()))?;
+        Ok(Owned { path, lock_path, _lock: lock })
+    }
+}
+
+/// The document first: a lock without a document is nothing, a document without a lock would be offered again.
+fn remove(path: &Path, lock_path: &Path) {
+    for file in [path, lock_path] {
+        // One that is gone already is as wanted; one that cannot be removed is offered again, which harms nothing.
+        let _ = fs::remove_file(file);
+    }
+}
+
+fn text(snapshot: &Snapshot, time: SystemTime) -> String {
+    let secs = time.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+    let path = snapshot.path.as_ref().map_or(Value::Null, |path| Value::String(path.to_string_lossy().into_owned()));
+    // Seen from no folder, paths stay absolute.
+    let document = serde_json::from_str(&snapshot.document.to_text(Path::new(""))).unwrap_or(Value::Null);
+    let fields = [("format", FORMAT.into()), ("version", 1.into()), ("path", path), ("time_secs", secs.into())];
+    let mut fields: Map<String, Value> = fields.into_iter().map(|(key, value)| (key.into(), value)).collect();
+    fields.insert("document".into(), document);
+    format!("{:#}\n", Value::Object(fields))
+}
+
+fn parse(bytes: &[u8], file: &Path) -> Option<(Snapshot, SystemTime)> {
+    let json: Value = serde_json::from_slice(bytes).ok()?;
+    if json["format"] != FORMAT {
+        return None;
+    }
+    let document = Document::from_json(json["document"].clone(), file).ok()?;
+    let time = UNIX_EPOCH + Duration::from_secs(json["time_secs"].as_u64()?.min(u64::from(u32::MAX)));
+    let path = json["path"].as_str().map(PathBuf::from);
+    Some((Snapshot { document: Arc::new(document), path }, time))
+}
+
+/// What is in the folder.
+#[derive(Debug, Default)]
+pub struct Scan {
+    /// Documents of programs that ended badly, the newest first.
+    pub found: Vec<Found>,
+    /// Files that are none of ours or damaged; they were renamed.
+    pub damaged: Vec<PathBuf>,
+    /// Files of programs that still run.
+    pub in_use: usize,
+}
+
+/// Looks for documents that were not saved. With `patient` it waits some seconds for a program that is just ending.
+pub fn scan(folder: &Path, patient: bool) -> Scan {
+    let start = Instant::now();
+    loop {
+        let scan = scan_once(folder);
+        let worth_waiting = patient && scan.found.is_empty() && scan.in_use > 0;
+        if !worth_waiting || start.elapsed() > PATIENCE {
+            return scan;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+fn scan_once(folder: &Path) -> Scan {
+    let mut scan = Scan::default();
+    // No folder is as good as an empty one.
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "json")) {
+        let lock_path = path.with_extension("lock");
+        let Ok(lock) = File::options().create(true).truncate(false).write(true).open(&lock_path) else { continue };
+        match lock.try_lock() {
+            Err(TryLockError::WouldBlock) => scan.in_use += 1,
+            // A disk without locks: better offered twice than never.
+            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_BYTES).ok().map(|b| parse(&b, &path))
+            {
+                Some(Some((snapshot, time))) => {
+                    let title = snapshot.title();
+                    scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });
+                }
+                Some(None) => {
+                    let aside = path.with_extension("damaged");
+                    if fs::rename(&path, &aside).is_ok() {
+                        remove(&path, &lock_path);
+                        scan.damaged.push(aside);
+                    }
+                }
+                // Removed by its owner in between.
+                None => remove(&path, &lock_path),
+            },
+        }
+    }
+    scan.found.sort_by(|a, b| b.time.cmp(&a.time).then_with(|| b.path.cmp(&a.path)));
+    scan
+}
+
+impl Snapshot {
+    fn title(&self) -> String {
+        let scene = &self.document.scene;
+        let shown = self.path.as_deref().or(Some(Path::new(scene)).filter(|_| !scene.starts_with("gallery:")));
+        let stem = shown.and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+        stem.unwrap_or_else(|| scene.trim_start_matches("gallery:").into())
+    }
+}
+
+impl Found {
+    /// The unsaved document.
+    pub fn snapshot(&self) -> &Snapshot {
+        &self.snapshot
+    }
+
+    /// Removes it for good.
+    pub fn discard(self) {
+        remove(&self.path, &self.lock_path);
+    }
+
+    /// How long ago it was written, for people.
+    pub fn age(&self) -> String {
+        let secs = SystemTime::now().duration_since(self.time).unwrap_or_default().as_secs();
+        let (count, unit) = match secs {
+            0..90 => return "a minute ago".into(),
+            90..5400 => ((secs + 30) / 60, "minutes"),
+            5400..129_600 => ((secs + 1800) / 3600, "hours"),
+            _ => ((secs + 43_200) / 86_400, "days"),
+        };
+        format!("{count} {unit} ago")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Scratch(PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Scratch {
+            let folder = std::env::temp_dir().join(format!("burnish-recovery-{}-{name}", std::process::id()));
+            let _ = fs::remove_dir_all(&folder);
+            Scratch(folder)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
+            let mut names: Vec<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn snapshot(scene: &str, path: Option<&str>) -> Snapshot {
+        let document = Document { scene: scene.into(), ..Document::default() };
+        Snapshot { document: Arc::new(document), path: path.map(PathBuf::from) }
+    }
+
+    /// What stays when a program is killed: the file, and a lock that nobody holds.
+    fn kill(recovery: Recovery) {
+        *lock(&recovery.shared.as_ref().expect("it was not finished").file) = None;
+    }
+
+    #[test]
+    fn what_a_killed_program_leaves_comes_back_with_its_path() {
+        let folder = Scratch::new("killed");
+        let recovery = Recovery::new(folder.0.clone());
+        let kept = snapshot("/models/chair.glb", Some("/work/chair.burnish"));
+        recovery.write_now(&kept).unwrap();
+        assert_eq!(scan(&folder.0, false).in_use, 1, "a running program is not disturbed");
+        kill(recovery);
+        let mut found = scan(&folder.0, false).found;
+        assert_eq!(found.len(), 1);
+        let found = found.remove(0);
+        assert_eq!((found.title.as_str(), found.age().as_str()), ("chair", "a minute ago"));
+        assert_eq!(found.snapshot().document, kept.document);
+        assert_eq!(found.snapshot().path, kept.path);
+        assert_eq!(scan(&folder.0, false).in_use, 1, "offered in one window, not in two");
+        found.discard();
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
+
+    #[test]
+    fn the_thread_writes_what_it_is_handed_and_removes_what_is_saved() {
+        let folder = Scratch::new("thread");
+        let mut recovery = Recovery::new(folder.0.clone());
+        let json = |names: &[String]| names.iter().filter(|name| name.ends_with(".json")).count();
+        let wait = |count: usize| {
+            while json(&folder.names()) != count {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        };
+        recovery.keep(snapshot("gallery:workbench", None));
+        wait(1);
+        recovery.forget();
+        wait(0);
+        recovery.keep(snapshot("gallery:workbench", None));
+        wait(1);
+        recovery.finish();
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
+
+    #[test]
+    fn an_adopted_file_goes_only_when_its_document_is_safe() {
+        let folder = Scratch::new("adopted");
+        let before = Recovery::new(folder.0.clone());
+        before.write_now(&snapshot("gallery:workbench", None)).unwrap();
+        kill(before);
+        let recovery = Recovery::new(folder.0.clone());
+        let found = scan(&folder.0, false).found.remove(0);
+        let old = found.path.clone();
+        recovery.adopt(found);
+        assert!(old.exists());
+        recovery.keep(snapshot("gallery:workbench", None));
+        while old.exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(folder.names().len(), 2, "{:?}", folder.names());
+    }
+
+    #[test]
+    fn a_damaged_file_is_set_aside() {
+        let folder = Scratch::new("damaged");
+        fs::create_dir_all(&folder.0).unwrap();
+        fs::write(folder.0.join("a.json"), "{\"format\": \"burnish-rec").unwrap();
+        let found = scan(&folder.0, false);
+        assert_eq!((found.found.len(), found.damaged.len()), (0, 1));
+        assert_eq!(folder.names(), ["a.damaged"]);
+    }
+}

@@ -51,7 +51,9 @@ fn main() -> Result<(), Failure> {
 
     let center = Affine3A::from_translation(scene.bounds().center());
     for step in 0..24 {
-        let turn = center * Affine3A::from_rotation_y(0.05) * center.inverse();
+        // To and fro: a room is open to the front only.
+        let angle = if step % 12 < 6 { 0.05 } else { -0.05 };
+        let turn = center * Affine3A::from_rotation_y(angle) * center.inverse();
         frame.camera.world_from_view = turn * frame.camera.world_from_view;
         let drawn = viewport.draw(&frame)?;
         if step % 3 == 2 {

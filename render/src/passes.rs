@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use burnish_core::surface::ggx::albedo::AlbedoTable;
+
 use crate::device::Gpu;
 use crate::pass::accumulate::AccumulatePass;
 use crate::pass::classical::{ClassicalPass, light_layout};
@@ -53,10 +55,13 @@ impl Passes {
         }
     }
 
-    /// Compiles in another thread what the first sharp picture will need.
+    /// Makes in another thread, while a scene is loaded, what the first pictures will need.
     pub(crate) fn warm_up(self: &Arc<Passes>) {
         let passes = self.clone();
         let compile = move || {
+            AlbedoTable::get();
+            passes.classical.pipeline(0);
+            passes.gbuffer.warm_up();
             passes.classical.pipeline(1);
         };
         // Where there is no thread to be had it is compiled when it is needed.

@@ -7,6 +7,7 @@
 mod commands;
 mod edits;
 mod files;
+mod icon;
 mod layout;
 mod native;
 pub mod offscreen;
@@ -18,7 +19,9 @@ mod session;
 mod shortcuts;
 mod stage;
 mod theme;
+mod thumbnails;
 mod toasts;
+mod user_presets;
 mod widget;
 mod workbench;
 
@@ -28,5 +31,5 @@ pub use panel::Pane;
 pub use preferences::Preferences;
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};
-pub use stage::{Live, LossLog, Shown, Stage, Status};
+pub use stage::{Live, LossLog, Shown, Stage, Status, Trial};
 pub use workbench::{Options, Workbench};

@@ -25,6 +25,13 @@ pub enum Request {
         /// PNG or JPEG.
         path: PathBuf,
     },
+    /// Put a preset of the browser on materials, by index.
+    AssignPreset {
+        /// Its key: the id of a metal, or `material:NAME`.
+        preset: String,
+        /// The materials.
+        materials: Vec<usize>,
+    },
     /// Read a preset file, keep it with the user's, and put it on the selected materials.
     ImportPreset(PathBuf),
     /// Look for a missing file in another place.

@@ -7,6 +7,8 @@ use eframe::egui::{
 };
 use glam::{DVec3, Vec3};
 
+use super::icon::{Icon, icon_button};
+
 /// Part of a row that the name takes.
 const NAME_SHARE: f32 = 0.36;
 /// Points of a number field.
@@ -81,16 +83,15 @@ pub fn name_ui(ui: &mut egui::Ui, name: &str, changed: bool, width: f32) -> Resp
 
 /// The arrow that takes a change back; it keeps its place where there is none.
 pub fn reset_ui(ui: &mut egui::Ui, label: &str, changed: bool) -> bool {
-    let (rect, response) = ui.allocate_exact_size(vec2(RESET_WIDTH, ui.spacing().interact_size.y), Sense::hover());
+    let size = vec2(RESET_WIDTH, ui.spacing().interact_size.y);
     if !changed {
+        ui.allocate_exact_size(size, Sense::hover());
         return false;
     }
-    let response = ui.put(rect, egui::Button::new("⟲").frame(false)) | response;
-    name_widget(&response, &format!("Reset {label}"));
-    response.on_hover_text(format!("Reset {label}")).clicked()
+    icon_button(ui, Icon::Reset, size, &format!("Reset {label}")).clicked()
 }
 
-/// Gives a button whose text is a sign a name that can be read out.
+/// Gives a button whose text is short a name that can be read out.
 pub fn name_widget(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, response.enabled(), name));
 }
@@ -156,7 +157,8 @@ fn number_ui(
         .step_by(if places == 0 { 1.0 } else { 0.0 })
         .clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(name.id).on_hover_text(hover);
-    let suffix = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
+    // Longer units stand in the hover text.
+    let suffix = if matches!(spec.unit.len(), 1..=3) { format!(" {}", spec.unit) } else { String::new() };
     let speed = if logarithmic { 0.01 * number.abs().max(1.0) } else { (max - min) / 250.0 };
     let field = DragValue::new(&mut new)
         .range(min..=max)
@@ -421,23 +423,6 @@ mod tests {
         drop(row);
         assert_eq!(ended, 1);
         assert_ne!(number, ParamValue::Number(0.5));
-    }
-
-    #[test]
-    fn the_signs_on_buttons_are_in_the_fonts() {
-        let context = egui::Context::default();
-        let mut missing = String::new();
-        let _ = context.run_ui(Default::default(), |ui| {
-            let font = egui::FontId::default();
-            for sign in "⟲↺✖★☆×•⏷".chars() {
-                ui.fonts_mut(|fonts| {
-                    if !fonts.has_glyph(&font, sign) {
-                        missing.push(sign)
-                    }
-                });
-            }
-        });
-        assert_eq!(missing, "");
     }
 
     #[test]

@@ -7,14 +7,16 @@ use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
 use super::commands::{Command, Entry, Menu, TABLE};
-use super::files::Files;
+use super::files::{Files, Folders};
 use super::palette::{Chosen, Palette};
-use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine};
+use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
+use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
+use super::user_presets::UserPresets;
 use super::{edits, layout, shortcuts, theme};
 
 /// How the window starts.
@@ -43,6 +45,8 @@ pub struct Workbench {
     status: StatusLine,
     requests: Requests,
     files: Files,
+    own: UserPresets,
+    thumbnails: Thumbnails,
     toasts: Toasts,
     palette: Option<Palette>,
     shortcut_page: bool,
@@ -71,6 +75,8 @@ impl Workbench {
             start: start.then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
+            own: UserPresets::new(files.folders().map(Folders::presets)),
+            thumbnails: Thumbnails::new(files.folders().map(Folders::thumbnails)),
             files,
             toasts: Toasts::default(),
             palette: None,
@@ -149,8 +155,27 @@ impl Workbench {
         self.session.now_secs = ui.input(|input| input.time);
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
-        let Workbench { session, preferences, stage, panels, tree, start, status, requests, files, .. } = self;
-        let mut context = Context { session, preferences, stage, requests };
+        let Workbench {
+            session,
+            preferences,
+            stage,
+            panels,
+            tree,
+            start,
+            status,
+            requests,
+            files,
+            own,
+            thumbnails,
+            ..
+        } = self;
+        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes()) {
+            requests.push(Request::Error(fault));
+        }
+        for preset in own.frame(ui.ctx(), requests) {
+            requests.push(Request::AssignPreset { preset, materials: session.selected_materials() });
+        }
+        let mut context = Context { session, preferences, stage, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);
@@ -204,6 +229,15 @@ impl Workbench {
     fn fulfil(&mut self, request: Request, ctx: &egui::Context) {
         match request {
             Request::Command(command) => self.command(command, ctx),
+            Request::ImportPreset(path) => {
+                self.start = None;
+                self.own.import(path);
+            }
+            Request::AssignPreset { preset, materials } => {
+                if let Err(fault) = assign(&mut self.session, &self.own, &preset, &materials) {
+                    self.requests.push(Request::Error(fault));
+                }
+            }
             Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
             Request::Error(text) => self.toasts.error(text, self.session.now_secs),
             about_files => {

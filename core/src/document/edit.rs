@@ -8,7 +8,8 @@ use super::{
 };
 use crate::lighting::classical;
 use crate::material::preset::{self, Preset};
-use crate::material::{TextureRole, params};
+use crate::material::saved::SavedMaterial;
+use crate::material::{Material, TextureRole, params};
 use crate::param::{self, ParamError, ParamValue};
 use crate::scene::Scene;
 
@@ -50,14 +51,37 @@ impl Document {
         let Some(entry) = self.material_mut(index) else { return };
         let kept = entry.preset.take().unwrap_or_default();
         entry.preset = Some(PresetUse { id: metal.id.clone(), ..kept });
-        if textures == Assigned::ReplaceTextures {
-            entry.textures = TextureRole::ALL.into_iter().map(|role| (role_key(role), TextureChoice::None)).collect();
-        }
+        entry.set_textures(textures);
         let built_in = preset::library().iter().any(|known| known == metal);
         if !built_in && !self.presets.iter().any(|known| **known == *metal) {
             self.presets.retain(|known| known.id != metal.id);
             self.presets.push(Arc::new(metal.clone()));
         }
+    }
+
+    /// Makes a material like a saved one; `base` is what its factors start from, see
+    /// [`Resolved::base`](super::Resolved::base).
+    pub fn assign_saved(&mut self, index: usize, saved: &SavedMaterial, base: &Material, textures: Assigned) {
+        let Some(entry) = self.material_mut(index) else { return };
+        entry.preset = None;
+        entry.values.clear();
+        for spec in params::PARAMS {
+            let value = saved.value(spec.key).filter(|value| params::get(base, spec.key) != Some(*value));
+            if let Some(value) = value {
+                entry.values.insert(spec.key.into(), spec.json(value));
+            }
+        }
+        entry.set_textures(textures);
+        if let Some(metal) = saved.constants() {
+            self.assign_preset(index, metal, Assigned::KeepTextures);
+            self.set_fresnel(index, saved.metal.as_ref().and_then(|metal| metal.fresnel.as_deref()));
+        }
+    }
+
+    /// A metal in use by its id: the document's own, else that of the program.
+    pub fn metal(&self, id: &str) -> Option<&Preset> {
+        let own = self.presets.iter().map(Arc::as_ref).find(|metal| metal.id == id);
+        own.or_else(|| preset::library().iter().find(|metal| metal.id == id))
     }
 
     /// Takes the metal off: the base colour counts again.
@@ -128,16 +152,22 @@ impl Document {
         Some(self.materials.len() - 1)
     }
 
-    /// Removes a material that no object has and that is not the only one from its source.
-    pub fn remove_material(&mut self, index: usize) -> bool {
+    /// True for a material that no object was given and that is not the only one from its source.
+    pub fn can_remove_material(&self, index: usize) -> bool {
         let Some(entry) = self.materials.get(index) else { return false };
         let assigned = self.assignments.iter().any(|a| a.material == entry.name);
         let first =
             entry.source.is_some() && self.materials.iter().position(|e| e.source == entry.source) == Some(index);
-        if !assigned && !first {
+        !assigned && !first
+    }
+
+    /// Removes a material where [`Document::can_remove_material`] allows it.
+    pub fn remove_material(&mut self, index: usize) -> bool {
+        let allowed = self.can_remove_material(index);
+        if allowed {
             self.materials.remove(index);
         }
-        !assigned && !first
+        allowed
     }
 
     /// Renames a material and what refers to it; a name that is taken gets a number.
@@ -234,6 +264,15 @@ impl Document {
             self.lighting.settings.insert(spec.key.into(), json);
         }
         Ok(())
+    }
+}
+
+impl MaterialEntry {
+    /// Clears all textures where they are to be replaced.
+    fn set_textures(&mut self, textures: Assigned) {
+        if textures == Assigned::ReplaceTextures {
+            self.textures = TextureRole::ALL.into_iter().map(|role| (role_key(role), TextureChoice::None)).collect();
+        }
     }
 }
 

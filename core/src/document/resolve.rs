@@ -161,9 +161,7 @@ fn set_reflectance(
 ) {
     let Some(used) = &entry.preset else { return };
     let form = used.fresnel.as_deref().unwrap_or(form);
-    let own = document.presets.iter().find(|metal| metal.id == used.id).map(|metal| metal.as_ref());
-    let metal = own.or_else(|| preset::library().iter().find(|metal| metal.id == used.id));
-    match metal.and_then(|metal| curves.get(metal, form)) {
+    match document.metal(&used.id).and_then(|metal| curves.get(metal, form)) {
         Some(fresnel) => material.reflectance = Reflectance::Preset { id: used.id.clone(), fresnel },
         None => notices.push(format!(
             "material `{}`: there is no metal `{}`; its base colour counts instead, pick another metal",

@@ -2,6 +2,7 @@
 
 pub mod params;
 pub mod preset;
+pub mod saved;
 mod texture;
 
 use std::sync::Arc;

@@ -23,6 +23,8 @@ const WEIGHT: f64 = 0.5;
 pub(crate) struct Pace {
     software: bool,
     scale: usize,
+    /// A frame has been drawn: the first compiles shaders in the driver and tells nothing.
+    warm: bool,
     /// Milliseconds of the surfaces of a frame: mostly vertices, whatever the resolution.
     surfaces: Option<f64>,
     /// Milliseconds a pixel of what follows while moving, and when still.
@@ -32,7 +34,7 @@ pub(crate) struct Pace {
 
 impl Pace {
     pub fn new(software: bool) -> Pace {
-        Pace { software, scale: 4, surfaces: None, moving_pixel: None, still_pixel: None }
+        Pace { software, scale: 4, warm: false, surfaces: None, moving_pixel: None, still_pixel: None }
     }
 
     /// Pixels to draw while something moves in a window of so many.
@@ -47,6 +49,9 @@ impl Pace {
 
     /// Learns from a moving frame: milliseconds of its surfaces and of the rest.
     pub fn note_moving(&mut self, window: UVec2, surfaces: f64, rest: f64) {
+        if !std::mem::replace(&mut self.warm, true) {
+            return;
+        }
         let size = self.moving_size(window);
         learn(&mut self.surfaces, surfaces);
         learn(&mut self.moving_pixel, rest / pixels(size));
@@ -70,7 +75,9 @@ impl Pace {
         if !self.software {
             return left;
         }
-        let row = f64::from(size.x) * self.still_pixel.unwrap_or(1e-3);
+        // The first rows tell what the others cost.
+        let Some(pixel) = self.still_pixel else { return ROWS_MIN.min(left) };
+        let row = f64::from(size.x) * pixel;
         let rows = ((STILL_MS - spent) / row.max(1e-6)).clamp(0.0, 1e6) as u32;
         if rows >= ROWS_MIN || left <= rows {
             rows.min(left)
@@ -107,4 +114,58 @@ fn pixels(size: UVec2) -> f64 {
 
 fn learn(known: &mut Option<f64>, seen: f64) {
     *known = Some(known.map_or(seen, |known| known + WEIGHT * (seen - known)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WINDOW: UVec2 = UVec2::new(800, 600);
+
+    /// Draws frames that cost so much, until the resolution stands.
+    fn settled(surfaces: f64, pixel: f64) -> UVec2 {
+        let mut pace = Pace::new(true);
+        for _ in 0..40 {
+            pace.note_moving(WINDOW, surfaces, pixel * pixels(pace.moving_size(WINDOW)));
+        }
+        pace.moving_size(WINDOW)
+    }
+
+    #[test]
+    fn moving_frames_keep_their_budget_where_they_can() {
+        assert_eq!(settled(1.0, 1e-5), WINDOW);
+        for pixel in [1e-4, 3e-4, 1e-3] {
+            let size = settled(20.0, pixel);
+            assert!(20.0 + pixel * pixels(size) <= MOVING_MS, "{size} at {pixel} ms a pixel");
+            assert!(size.x < WINDOW.x && size.x >= 200, "{size} at {pixel} ms a pixel");
+        }
+        // Vertices alone take longer: as few pixels as there may be.
+        assert_eq!(settled(300.0, 1e-4), UVec2::new(200, 150));
+    }
+
+    #[test]
+    fn no_small_side_is_a_power_of_two() {
+        for edge in 1..3000 {
+            for scale in SCALES.into_iter().filter(|s| *s < 1.0) {
+                let side = scaled(UVec2::splat(edge), scale).x;
+                assert!(side > 0 && (side <= 2 || !side.is_power_of_two()), "{edge} times {scale} is {side}");
+            }
+        }
+    }
+
+    #[test]
+    fn graphics_cards_draw_every_pixel() {
+        let pace = Pace::new(false);
+        assert_eq!(pace.moving_size(WINDOW), WINDOW);
+        assert_eq!((pace.moving_samples(16), pace.rows(50.0, WINDOW, 600)), (16, 600));
+    }
+
+    #[test]
+    fn a_still_frame_goes_on_in_every_call() {
+        let mut pace = Pace::new(true);
+        assert_eq!(pace.rows(0.0, WINDOW, 600), ROWS_MIN);
+        // A second for a row.
+        pace.note_rows(WINDOW, 1, 1000.0);
+        assert_eq!((pace.rows(0.0, WINDOW, 600), pace.rows(1.0, WINDOW, 600)), (ROWS_MIN, 0));
+    }
 }

@@ -9,18 +9,23 @@ use directories::ProjectDirs;
 pub struct Folders {
     config: PathBuf,
     data: PathBuf,
+    cache: PathBuf,
 }
 
 impl Folders {
     /// Those that the system gives programs; `None` for a user without a home.
     pub fn of_user() -> Option<Folders> {
         let of_system = ProjectDirs::from("", "", "burnish")?;
-        Some(Folders { config: of_system.config_dir().into(), data: of_system.data_dir().into() })
+        Some(Folders {
+            config: of_system.config_dir().into(),
+            data: of_system.data_dir().into(),
+            cache: of_system.cache_dir().into(),
+        })
     }
 
     /// All in one folder.
     pub fn within(folder: &Path) -> Folders {
-        Folders { config: folder.into(), data: folder.into() }
+        Folders { config: folder.into(), data: folder.into(), cache: folder.into() }
     }
 
     /// The user's choices.
@@ -33,7 +38,12 @@ impl Folders {
         self.data.join("recovery")
     }
 
-    /// Metals of the user.
+    /// Pictures of presets, which can be made again.
+    pub fn thumbnails(&self) -> PathBuf {
+        self.cache.join("thumbnails")
+    }
+
+    /// Metals and saved materials of the user.
     pub fn presets(&self) -> PathBuf {
         self.data.join("presets")
     }

@@ -4,12 +4,10 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burnish_core::document::{self, Assigned, Document, Missing, MissingKind, Sources, TextureChoice};
-use burnish_core::file::{read_bounded, write_atomic};
+use burnish_core::document::{self, Document, Missing, MissingKind, Sources, TextureChoice};
 use burnish_core::import::{self, ImportOptions};
 use burnish_core::job::{Job, Outcome};
 use burnish_core::material::TextureRole;
-use burnish_core::material::preset::Preset;
 use burnish_core::scene::{Environment, Image, Scene};
 use eframe::egui;
 
@@ -38,9 +36,6 @@ pub struct Notices {
     /// One each.
     pub lines: Vec<String>,
 }
-
-/// Largest file of a metal.
-const MAX_PRESET_BYTES: u64 = 1 << 20;
 
 /// The change that a read file makes.
 type Apply = Box<dyn FnOnce(&mut Landing<'_>) + Send>;
@@ -161,28 +156,6 @@ pub fn recovered(found: Found) -> Load {
             landing.watch.start(seen);
             landing.recovery.adopt(found);
             landing.outbox.push(Request::Notice("Recovered the unsaved edits; save them to keep them".into()));
-        }))
-    })
-}
-
-/// A metal, which is kept with the user's in `folder` and put on the selected materials.
-pub fn preset(path: &Path, folder: Option<PathBuf>) -> Load {
-    let known = known_path(path);
-    Load::new(format!("Importing {}", name_of(&known)), false, move || {
-        let metal = Preset::read(Path::new(&known)).map_err(|e| e.to_string())?;
-        if let Some(folder) = folder {
-            let kept = std::fs::create_dir_all(&folder).map_err(|e| e.to_string()).and_then(|()| {
-                let bytes = read_bounded(Path::new(&known), MAX_PRESET_BYTES).map_err(|e| e.to_string())?;
-                write_atomic(&folder.join(name_of(&known)), &bytes).map_err(|e| e.to_string())
-            });
-            kept.map_err(|e| format!("{} cannot be kept in {} ({e})", name_of(&known), folder.display()))?;
-        }
-        Ok(Box::new(move |landing| {
-            let targets = landing.session.selected_materials();
-            landing.session.seal();
-            landing.session.edit(&format!("Assign {}", metal.name), &metal.id, |document| {
-                targets.iter().for_each(|index| document.assign_preset(*index, &metal, Assigned::KeepTextures));
-            });
         }))
     })
 }

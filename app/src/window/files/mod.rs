@@ -166,10 +166,6 @@ impl Files {
                     self.loads.push(load::texture(entry.name.clone(), role, &path));
                 }
             }
-            Request::ImportPreset(path) => {
-                let folder = self.folders.as_ref().map(Folders::presets);
-                self.loads.push(load::preset(&path, folder));
-            }
             Request::Relink { missing, path } => {
                 self.loads.push(load::relinked(missing, &path, session.missing.clone()));
             }
@@ -189,8 +185,12 @@ impl Files {
                 let fault = self.keep_now(session).err();
                 self.outbox.extend(fault.map(Request::Error));
             }
-            // Not about files.
-            Request::Command(_) | Request::Notice(_) | Request::Error(_) => {}
+            // Not about files of the document.
+            Request::Command(_)
+            | Request::Notice(_)
+            | Request::Error(_)
+            | Request::AssignPreset { .. }
+            | Request::ImportPreset(_) => {}
         }
         ctx.request_repaint();
     }

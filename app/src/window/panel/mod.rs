@@ -17,11 +17,13 @@ use super::preferences::Preferences;
 use super::request::Requests;
 use super::session::Session;
 use super::stage::Stage;
+use super::thumbnails::Thumbnails;
+use super::user_presets::UserPresets;
 
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
 pub use material::MaterialPanel;
-pub use presets::PresetsPanel;
+pub use presets::{PresetsPanel, assign};
 pub use reflectance::ReflectancePanel;
 pub use scene_tree::SceneTree;
 pub use start::StartPage;
@@ -38,9 +40,15 @@ pub struct Context<'a> {
     pub stage: &'a mut Stage,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
+    /// The user's presets.
+    pub own: &'a mut UserPresets,
+    /// Pictures of presets.
+    pub thumbnails: &'a mut Thumbnails,
 }
 
-/// What is dragged out of the preset browser: the id of a preset.
+/// What is dragged out of the preset browser: the key of a preset, for [`Request::AssignPreset`].
+///
+/// [`Request::AssignPreset`]: super::request::Request::AssignPreset
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DraggedPreset(pub String);
 
@@ -90,7 +98,7 @@ impl Pane {
 
     /// Fills its place, with scroll bars of its own if any.
     fn scrolls_itself(self) -> bool {
-        matches!(self, Pane::Viewport | Pane::Scene | Pane::History)
+        matches!(self, Pane::Viewport | Pane::Scene | Pane::Presets | Pane::History)
     }
 }
 

@@ -9,7 +9,7 @@ use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
 
-use super::{LossLog, Shown, Status};
+use super::{LossLog, Shown, Status, Trial};
 
 /// A viewport on the window's device.
 pub struct Live {
@@ -22,7 +22,7 @@ pub struct Live {
     condition: Condition,
     /// The window was not shown yet.
     first: bool,
-    inject_loss: bool,
+    trial: Option<Trial>,
 }
 
 /// Whether there is something to draw with.
@@ -53,7 +53,7 @@ impl Live {
             losses,
             condition: Condition::Sound,
             first: true,
-            inject_loss: false,
+            trial: None,
         }
     }
 
@@ -82,8 +82,10 @@ impl Live {
     }
 
     fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
-        if std::mem::take(&mut self.inject_loss) {
-            return Err(GpuError::Failed("a loss for trial".into()).into());
+        match self.trial.take() {
+            Some(Trial::Call) => return Err(GpuError::Failed("a call, for trial".into()).into()),
+            Some(Trial::Device) => return Err(GpuError::Failed("device lost: for trial".into()).into()),
+            None => {}
         }
         self.viewport.set_scene(scene)?;
         let drawn = self.viewport.draw(frame)?;
@@ -167,9 +169,9 @@ impl Live {
         (self.condition == Condition::Restart).then(|| self.losses.clone())
     }
 
-    /// Makes the next frame find its device lost.
-    pub fn inject_loss(&mut self) {
-        self.inject_loss = true;
+    /// Makes the next frame fail.
+    pub fn inject(&mut self, trial: Trial) {
+        self.trial = Some(trial);
     }
 }
 

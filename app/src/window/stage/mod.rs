@@ -21,6 +21,15 @@ pub enum Stage {
     Live(Box<Live>),
 }
 
+/// A failure to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trial {
+    /// A call fails; the device draws on.
+    Call,
+    /// The device is gone for good.
+    Device,
+}
+
 /// What the viewport shows in a frame of the window.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
@@ -100,10 +109,10 @@ impl Stage {
         }
     }
 
-    /// Makes the next frame find its device lost, to try what happens then.
-    pub fn inject_loss(&mut self) {
+    /// Makes the next frame fail, to try what happens then.
+    pub fn inject(&mut self, trial: Trial) {
         if let Stage::Live(live) = self {
-            live.inject_loss();
+            live.inject(trial);
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::UVec2;
 
 use crate::device::Gpu;
 use crate::pass::{MeshKind, MeshPipelines, cleared, target};
-use crate::scene::{GpuScene, VERTEX_ATTRIBUTES, VERTEX_STRIDE};
+use crate::scene::{GpuScene, VERTEX_ATTRIBUTES, VERTEX_STRIDE, Variant};
 use crate::shader;
 
 /// Format of the four packed targets.
@@ -63,6 +63,11 @@ impl GBufferPass {
             both_sides: false,
         };
         GBufferPass { pipelines: MeshPipelines::new(&gpu.device, layouts, kind) }
+    }
+
+    /// Compiles the variant that every scene has.
+    pub fn warm_up(&self) {
+        self.pipelines.get(Variant::ALL[0]);
     }
 
     /// Draws all opaque and masked instances.

@@ -6,8 +6,6 @@ mod overlay;
 mod readout;
 
 use burnish_core::color::tone::ToneMap;
-use burnish_core::document::Assigned;
-use burnish_core::material::preset::{self, Preset};
 use burnish_core::scene::Picked;
 use burnish_render::Frame;
 use eframe::egui::emath::GuiRounding;
@@ -43,7 +41,7 @@ pub struct ViewportPanel {
     /// Width by height.
     aspect: f32,
     readout: readout::Readout,
-    boxes: overlay::Boxes,
+    outlines: overlay::Outlines,
     /// What the user was told, so that it is told once.
     told: Option<String>,
 }
@@ -57,7 +55,7 @@ impl Default for ViewportPanel {
             changed_secs: f64::NEG_INFINITY,
             aspect: 1.5,
             readout: Default::default(),
-            boxes: Default::default(),
+            outlines: Default::default(),
             told: None,
         }
     }
@@ -170,14 +168,7 @@ impl ViewportPanel {
             context.requests.push(Request::Notice("There is no object there: drop the preset on one.".into()));
             return;
         };
-        let Some(metal) = preset(context.session, &dropped.0).cloned() else {
-            context.requests.push(Request::Error(format!("There is no preset `{}` any more.", dropped.0)));
-            return;
-        };
-        let name = context.session.document().materials.get(material).map(|entry| entry.name.clone());
-        context.session.edit("Metal", &name.unwrap_or_default(), |document| {
-            document.assign_preset(material, &metal, Assigned::KeepTextures);
-        });
+        context.requests.push(Request::AssignPreset { preset: dropped.0.clone(), materials: vec![material] });
         select(context.session, picked, false);
     }
 
@@ -190,7 +181,7 @@ impl ViewportPanel {
         shown: &Shown,
     ) {
         let rect = response.rect;
-        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.boxes);
+        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.outlines);
         let selected = overlay::selection_text(context.session);
         if !selected.is_empty() {
             overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");
@@ -236,12 +227,6 @@ fn pressed_with(event: &Event) -> Option<Modifiers> {
         Event::PointerButton { pressed: true, modifiers, .. } => Some(*modifiers),
         _ => None,
     }
-}
-
-/// A metal that comes with the program or with the document.
-fn preset<'a>(session: &'a Session, id: &str) -> Option<&'a Preset> {
-    let own = session.document().presets.iter().map(|metal| metal.as_ref());
-    own.chain(preset::library()).find(|metal| metal.id == id)
 }
 
 /// What the picture is of, for those who do not see it.

@@ -7,6 +7,8 @@ use super::*;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::request::Requests;
 use crate::window::stage::Stage;
+use crate::window::thumbnails::Thumbnails;
+use crate::window::user_presets::UserPresets;
 
 struct Bench {
     panel: ViewportPanel,
@@ -31,7 +33,8 @@ fn bench() -> Harness<'static, Bench> {
     let show = |ui: &mut egui::Ui, bench: &mut Bench| {
         bench.session.now_secs = ui.input(|input| input.time);
         let Bench { panel, session, preferences, stage, requests } = bench;
-        panel.ui(ui, &mut Context { session, preferences, stage, requests });
+        let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
+        panel.ui(ui, &mut Context { session, preferences, stage, requests, own, thumbnails });
     };
     let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);
     harness.run_steps(2);
@@ -140,7 +143,7 @@ fn a_click_selects_what_is_there_and_names_it() {
     let session = &bench.state().session;
     assert_eq!(session.selection.objects.len(), 1);
     let text = overlay::selection_text(session);
-    assert!(text.contains(": "), "{text}");
+    assert!(text.contains(", material "), "{text}");
     bench.get_by_label(&text);
     assert!(session.history().past().is_empty(), "a click is no edit");
 }

@@ -1,0 +1,171 @@
+//! The preset browser: balls to look at, to search, to put on materials.
+
+mod details;
+mod item;
+mod tile;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use burnish_core::document::Assigned;
+use burnish_core::material::preset::Preset;
+use eframe::egui;
+
+pub use details::title;
+pub use item::assign;
+use item::{Item, list};
+
+use super::{Context, DraggedPreset};
+use crate::window::request::{Purpose, Request};
+use crate::window::widget::{choice_ui, name_input};
+
+/// What is listed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Filter {
+    #[default]
+    All,
+    Favourites,
+    Own,
+}
+
+const FILTERS: [(&str, Filter); 3] = [("All", Filter::All), ("Favorites", Filter::Favourites), ("Own", Filter::Own)];
+
+/// The browser.
+#[derive(Default)]
+pub struct PresetsPanel {
+    search: String,
+    filter: Filter,
+    /// Key of the preset whose origin is told.
+    selected: Option<String>,
+    /// The new name that is being typed.
+    name: Option<String>,
+    import: Option<String>,
+    items: Vec<Item>,
+    /// What `items` were made of.
+    made_of: Option<(u64, Vec<Arc<Preset>>)>,
+}
+
+impl PresetsPanel {
+    /// Shows the panel.
+    pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        self.refresh(context);
+        self.search_ui(ui);
+        egui::Panel::bottom("preset details").resizable(false).show_separator_line(true).show(ui, |ui| {
+            self.foot_ui(ui, context);
+        });
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.grid_ui(ui, context));
+    }
+
+    fn refresh(&mut self, context: &Context<'_>) {
+        let document = context.session.document();
+        let now = (context.own.revision, &document.presets);
+        let same = |known: &(u64, Vec<Arc<Preset>>)| {
+            let alike = |(a, b): (&Arc<Preset>, &Arc<Preset>)| Arc::ptr_eq(a, b);
+            known.0 == now.0 && known.1.len() == now.1.len() && known.1.iter().zip(now.1).all(alike)
+        };
+        if !self.made_of.as_ref().is_some_and(same) {
+            self.items = list(context.own, document);
+            self.made_of = Some((now.0, now.1.clone()));
+        }
+    }
+
+    fn search_ui(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let width = (ui.available_width() - 96.0).max(60.0);
+            let field = egui::TextEdit::singleline(&mut self.search).hint_text("Search").desired_width(width);
+            let field = ui.add(field).on_hover_text("Name, symbol or tag, such as gold, Au or noble");
+            name_input(&field, "Search presets", &self.search);
+            let place = FILTERS.iter().position(|(_, filter)| *filter == self.filter).unwrap_or(0);
+            let names = FILTERS.map(|(name, _)| name);
+            let picked = choice_ui(ui, "Show presets", &names, place, 80.0, None, "Which presets are listed");
+            if let Some((_, filter)) = picked.and_then(|place| FILTERS.get(place)) {
+                self.filter = *filter;
+            }
+        });
+    }
+
+    fn grid_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let in_use = context.session.material().and_then(|entry| Some(entry.preset.as_ref()?.id.clone()));
+        let favourites = context.preferences.favourites.clone();
+        let shown = self.items.iter().filter(|item| {
+            let kept = match self.filter {
+                Filter::All => true,
+                Filter::Favourites => favourites.contains(&item.key),
+                Filter::Own => item.is_own(),
+            };
+            kept && item.matches(&self.search)
+        });
+        let mut empty = true;
+        let mut picked = None;
+        ui.spacing_mut().item_spacing = egui::vec2(4.0, 4.0);
+        ui.horizontal_wrapped(|ui| {
+            for item in shown {
+                empty = false;
+                let look = tile::Look {
+                    in_use: in_use.as_ref() == Some(&item.key),
+                    selected: self.selected.as_ref() == Some(&item.key),
+                    favourite: favourites.contains(&item.key),
+                };
+                let ball = context.thumbnails.get(&item.subject).map(|ball| ball.id());
+                let response = tile::tile_ui(ui, item, ball, look);
+                response.dnd_set_drag_payload(DraggedPreset(item.key.clone()));
+                if response.double_clicked() {
+                    picked = Some((item.key.clone(), context.session.selected_materials()));
+                } else if response.clicked() {
+                    picked = Some((item.key.clone(), vec![context.session.selection.material]));
+                }
+                response.on_hover_ui(|ui| details::origin_ui(ui, item));
+            }
+        });
+        if empty {
+            ui.weak(match self.filter {
+                Filter::Own => "No presets of your own yet. Save a material as preset, or import a metal.",
+                Filter::Favourites if self.search.is_empty() => "No favorites yet. Select a preset and press its star.",
+                _ => "Nothing is found. Try a name, a symbol or a tag.",
+            });
+        }
+        if let Some((preset, materials)) = picked {
+            self.selected = Some(preset.clone());
+            self.name = None;
+            context.requests.push(Request::AssignPreset { preset, materials });
+        }
+    }
+
+    /// What is selected, and what assigning does.
+    fn foot_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        ui.add_space(2.0);
+        let selected = self.selected.clone();
+        if let Some(item) = self.items.iter().find(|item| Some(&item.key) == selected.as_ref()).cloned() {
+            details::selected_ui(ui, &item, &mut self.name, context);
+            ui.separator();
+        }
+        let mut replaces = context.own.textures == Assigned::ReplaceTextures;
+        let hover = "Off: a preset replaces the reflectance; textures of normals, occlusion, roughness and anisotropy \
+                     stay. On: it clears all textures of the material.";
+        if ui.checkbox(&mut replaces, "Replace textures").on_hover_text(hover).changed() {
+            context.own.textures = if replaces { Assigned::ReplaceTextures } else { Assigned::KeepTextures };
+        }
+        self.import_ui(ui, context);
+    }
+
+    /// Dialog and path field for a preset file.
+    fn import_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let mut path = self.import.clone().unwrap_or_default();
+        ui.horizontal(|ui| {
+            let button = ui.button("Import...").on_hover_text("Add a metal or saved material (.json) to your presets");
+            if button.clicked() {
+                context.requests.push(Request::PickFile(Purpose::Preset));
+            }
+            let width = ui.available_width();
+            let field = egui::TextEdit::singleline(&mut path).hint_text("or its path, then Enter").desired_width(width);
+            let field = ui.add(field);
+            name_input(&field, "Path of a preset", &path);
+            let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if entered && !path.trim().is_empty() {
+                context.requests.push(Request::ImportPreset(PathBuf::from(path.trim())));
+                path.clear();
+            }
+        });
+        self.import = Some(path);
+    }
+}

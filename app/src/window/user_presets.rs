@@ -1,0 +1,374 @@
+//! The user's own presets: metals and saved materials, one file each in the user's data folder.
+//!
+//! Files are read and written by jobs, one after the other; after each the folder is listed anew.
+
+use std::collections::{BTreeSet, VecDeque};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use burnish_core::document::Assigned;
+use burnish_core::file::write_atomic;
+use burnish_core::job::{Job, Outcome};
+use burnish_core::material::preset::{self, Preset};
+use burnish_core::material::saved::{self, SavedMaterial};
+use eframe::egui;
+
+use super::request::{Request, Requests};
+
+/// Most files that are read of a folder.
+const MAX_FILES: usize = 2000;
+
+/// The user's presets as they are known now.
+#[derive(Default)]
+pub struct UserPresets {
+    folder: Option<PathBuf>,
+    listing: Arc<Listing>,
+    waiting: VecDeque<Task>,
+    running: Option<Job<(Listing, Vec<Event>)>>,
+    told: BTreeSet<String>,
+    /// Counts the changes of the listing.
+    pub revision: u64,
+    /// What assigning a preset does with the textures of the material.
+    pub textures: Assigned,
+}
+
+/// What is in the folder.
+#[derive(Clone, Debug, Default)]
+pub struct Listing {
+    /// Metals, sorted by name.
+    pub metals: Vec<(PathBuf, Arc<Preset>)>,
+    /// Saved materials, sorted by name.
+    pub materials: Vec<(PathBuf, Arc<SavedMaterial>)>,
+    /// What could not be read, in words.
+    faults: Vec<String>,
+}
+
+/// What is to be done with the folder.
+#[derive(Clone, Debug)]
+enum Task {
+    Read,
+    Import(PathBuf),
+    Save(Box<SavedMaterial>),
+    Rename { path: PathBuf, name: String },
+    Remove(PathBuf),
+}
+
+/// What became of it.
+#[derive(Clone, Debug, PartialEq)]
+enum Event {
+    /// A preset came in; the key by which it is assigned.
+    Imported(String),
+    Notice(String),
+    Error(String),
+}
+
+impl UserPresets {
+    /// Starts to read a folder, which need not exist; without one nothing is kept.
+    pub fn new(folder: Option<PathBuf>) -> UserPresets {
+        let waiting = folder.iter().map(|_| Task::Read).collect();
+        UserPresets { folder, waiting, ..UserPresets::default() }
+    }
+
+    /// What is in the folder.
+    pub fn listing(&self) -> &Arc<Listing> {
+        &self.listing
+    }
+
+    /// Copies a metal or saved material into the folder; it is assigned once it is there.
+    pub fn import(&mut self, path: PathBuf) {
+        self.waiting.push_back(Task::Import(path));
+    }
+
+    /// Keeps a material. One of the same name is replaced.
+    pub fn save(&mut self, material: SavedMaterial) {
+        self.waiting.push_back(Task::Save(Box::new(material)));
+    }
+
+    /// Gives what a file holds another name.
+    pub fn rename(&mut self, path: &Path, name: &str) {
+        self.waiting.push_back(Task::Rename { path: path.into(), name: name.trim().into() });
+    }
+
+    /// Removes a file of the folder. Documents that use what it held keep it.
+    pub fn remove(&mut self, path: &Path) {
+        self.waiting.push_back(Task::Remove(path.into()));
+    }
+
+    /// Takes over what jobs did and starts the next; once a frame. Returns keys of presets that came in.
+    pub fn frame(&mut self, ctx: &egui::Context, requests: &mut Requests) -> Vec<String> {
+        let mut imported = Vec::new();
+        match self.running.as_mut().map(Job::poll) {
+            None | Some(Outcome::Running) => {}
+            Some(Outcome::Failed) => self.running = None,
+            Some(Outcome::Done((listing, events))) => {
+                self.running = None;
+                self.revision += 1;
+                for fault in &listing.faults {
+                    if self.told.insert(fault.clone()) {
+                        requests.push(Request::Error(fault.clone()));
+                    }
+                }
+                self.listing = Arc::new(listing);
+                for event in events {
+                    match event {
+                        Event::Imported(key) => imported.push(key),
+                        Event::Notice(text) => requests.push(Request::Notice(text)),
+                        Event::Error(text) => requests.push(Request::Error(text)),
+                    }
+                }
+            }
+        }
+        if self.running.is_none()
+            && let Some(task) = self.waiting.pop_front()
+        {
+            let Some(folder) = self.folder.clone() else {
+                requests.push(Request::Error("There is no folder for presets: the user has no home folder".into()));
+                return imported;
+            };
+            let ctx = ctx.clone();
+            let wake = move || ctx.request_repaint();
+            self.running = Some(Job::spawn("Presets", wake, move |_| {
+                let event = task.run(&folder);
+                (Listing::read(&folder), event.into_iter().collect())
+            }));
+        }
+        imported
+    }
+}
+
+/// The key by which a saved material is assigned; ids of metals have no colon.
+pub fn key_of(material: &SavedMaterial) -> String {
+    format!("material:{}", material.name)
+}
+
+impl Listing {
+    fn read(folder: &Path) -> Listing {
+        let mut listing = Listing::default();
+        for path in files(&metals_folder(folder)) {
+            match Preset::read(&path).map_err(|e| e.to_string()).and_then(|metal| own_id(&metal, &path).map(|()| metal))
+            {
+                Ok(metal) => listing.metals.push((path, Arc::new(metal))),
+                Err(fault) => listing.faults.push(fault),
+            }
+        }
+        for path in files(&materials_folder(folder)) {
+            match SavedMaterial::read(&path) {
+                Ok(material) => listing.materials.push((path, Arc::new(material))),
+                Err(fault) => listing.faults.push(fault.to_string()),
+            }
+        }
+        listing.metals.sort_by(|a, b| a.1.name.cmp(&b.1.name));
+        listing.materials.sort_by(|a, b| a.1.name.cmp(&b.1.name));
+        listing
+    }
+}
+
+fn metals_folder(folder: &Path) -> PathBuf {
+    folder.join("metals")
+}
+
+fn materials_folder(folder: &Path) -> PathBuf {
+    folder.join("materials")
+}
+
+/// The `.json` files of a folder, sorted; none where it cannot be listed.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    paths.sort();
+    paths.truncate(MAX_FILES);
+    paths
+}
+
+/// Refuses the id of a metal that comes with the program: documents would not know which is meant.
+fn own_id(metal: &Preset, path: &Path) -> Result<(), String> {
+    match preset::library().iter().any(|known| known.id == metal.id) {
+        true => Err(format!(
+            "{}: field `id` is `{}`, the id of a metal that comes with Burnish; give it another id",
+            path.display(),
+            metal.id
+        )),
+        false => Ok(()),
+    }
+}
+
+impl Task {
+    fn run(self, folder: &Path) -> Option<Event> {
+        let done = match self {
+            Task::Read => return None,
+            Task::Import(path) => import(&path, folder).map(Event::Imported),
+            Task::Save(material) => save(&material, folder).map(Event::Notice),
+            Task::Rename { path, name } => rename(&path, &name, folder).map(Event::Notice),
+            Task::Remove(path) => remove(&path, folder).map(Event::Notice),
+        };
+        Some(done.unwrap_or_else(Event::Error))
+    }
+}
+
+fn import(path: &Path, folder: &Path) -> Result<String, String> {
+    match Preset::read(path) {
+        Ok(metal) => {
+            own_id(&metal, path)?;
+            write(&metals_folder(folder).join(format!("{}.json", metal.id)), &metal)?;
+            Ok(metal.id)
+        }
+        // A saved material is told from a metal by its fields; the message is that of what it says to be.
+        Err(fault) => match SavedMaterial::read(path) {
+            Ok(material) => {
+                save(&material, folder)?;
+                Ok(key_of(&material))
+            }
+            Err(saved::SavedError::Json { .. }) => Err(fault.to_string()),
+            Err(saved::SavedError::Field { field, .. }) if field == "format" => Err(fault.to_string()),
+            Err(other) => Err(other.to_string()),
+        },
+    }
+}
+
+fn save(material: &SavedMaterial, folder: &Path) -> Result<String, String> {
+    let folder = materials_folder(folder);
+    make(&folder)?;
+    let path = file_of(&material.name, &folder);
+    material.write(&path).map_err(|e| e.to_string())?;
+    Ok(format!("Saved `{}` among your presets", material.name))
+}
+
+/// The file of a name: that which already holds it, else a new one.
+fn file_of(name: &str, folder: &Path) -> PathBuf {
+    let holder = files(folder).into_iter().find(|path| SavedMaterial::read(path).is_ok_and(|known| known.name == name));
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let stem: String = name.chars().map(plain).take(40).collect();
+    let free = || {
+        let names = (1u64..).map(|number| match number {
+            1 => format!("{stem}.json"),
+            _ => format!("{stem}-{number}.json"),
+        });
+        names.map(|name| folder.join(name)).find(|path| !path.exists()).unwrap_or_default()
+    };
+    holder.unwrap_or_else(free)
+}
+
+fn rename(path: &Path, name: &str, folder: &Path) -> Result<String, String> {
+    inside(path, folder)?;
+    if name.is_empty() {
+        return Err("A preset needs a name of at least one letter".into());
+    }
+    if path.starts_with(metals_folder(folder)) {
+        let metal = Preset { name: name.into(), ..Preset::read(path).map_err(|e| e.to_string())? };
+        write(path, &metal)?;
+    } else {
+        let material = SavedMaterial { name: name.into(), ..SavedMaterial::read(path).map_err(|e| e.to_string())? };
+        let taken = Listing::read(folder).materials.iter().any(|(other, known)| known.name == name && other != path);
+        if taken {
+            return Err(format!("There is a preset `{name}` already; choose another name"));
+        }
+        material.write(path).map_err(|e| e.to_string())?;
+    }
+    Ok(format!("Renamed to `{name}`"))
+}
+
+fn remove(path: &Path, folder: &Path) -> Result<String, String> {
+    inside(path, folder)?;
+    fs::remove_file(path).map_err(|e| format!("{}: cannot be removed ({e})", path.display()))?;
+    Ok("Removed the preset; documents that use it keep it".into())
+}
+
+/// Only files of the folder are touched.
+fn inside(path: &Path, folder: &Path) -> Result<(), String> {
+    let parent = path.parent();
+    match parent == Some(&metals_folder(folder)) || parent == Some(&materials_folder(folder)) {
+        true => Ok(()),
+        false => Err(format!("{} is not among your presets", path.display())),
+    }
+}
+
+fn make(folder: &Path) -> Result<(), String> {
+    fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made ({e})", folder.display()))
+}
+
+fn write(path: &Path, metal: &Preset) -> Result<(), String> {
+    path.parent().map_or(Ok(()), make)?;
+    let text = serde_json::to_string_pretty(metal).map_err(|e| e.to_string())?;
+    write_atomic(path, format!("{text}\n").as_bytes()).map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burnish_core::material::Material;
+
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Folder {
+            let path = std::env::temp_dir().join(format!("burnish-presets-{name}-{}", std::process::id()));
+            fs::create_dir_all(&path).unwrap();
+            Folder(path)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn metal(folder: &Path, id: &str) -> PathBuf {
+        let path = folder.join("in.json");
+        let metal = Preset { id: id.into(), name: "My gold".into(), ..preset::find("Au").unwrap() };
+        fs::write(&path, serde_json::to_string(&metal).unwrap()).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_metal_is_copied_and_one_with_the_id_of_another_is_refused() {
+        let folder = Folder::new("metal");
+        assert_eq!(Task::Import(metal(&folder.0, "My-Au")).run(&folder.0), Some(Event::Imported("My-Au".into())));
+        let listing = Listing::read(&folder.0);
+        assert_eq!(listing.metals.iter().map(|(_, m)| m.name.as_str()).collect::<Vec<_>>(), ["My gold"]);
+        let Some(Event::Error(fault)) = Task::Import(metal(&folder.0, "Au")).run(&folder.0) else { panic!() };
+        assert!(fault.contains("in.json") && fault.contains("another id"), "{fault}");
+    }
+
+    #[test]
+    fn a_material_is_saved_replaced_renamed_and_removed() {
+        let folder = Folder::new("material");
+        let saved = |roughness| {
+            let material = Material { roughness, ..Material::default() };
+            SavedMaterial::new("Fine / satin", Vec::new(), &material, None)
+        };
+        for roughness in [0.2, 0.3] {
+            let done = Task::Save(Box::new(saved(roughness))).run(&folder.0);
+            assert!(matches!(done, Some(Event::Notice(_))), "{done:?}");
+        }
+        let listing = Listing::read(&folder.0);
+        assert_eq!(listing.materials.len(), 1);
+        let (path, known) = listing.materials[0].clone();
+        assert_eq!(*known, saved(0.3));
+        let renamed = Task::Rename { path: path.clone(), name: "Satin".into() }.run(&folder.0);
+        assert_eq!(renamed, Some(Event::Notice("Renamed to `Satin`".into())));
+        assert_eq!(Listing::read(&folder.0).materials[0].1.name, "Satin");
+        Task::Remove(path).run(&folder.0);
+        assert!(Listing::read(&folder.0).materials.is_empty());
+    }
+
+    #[test]
+    fn a_file_outside_the_folder_is_never_removed() {
+        let folder = Folder::new("outside");
+        let path = metal(&folder.0, "My-Au");
+        assert!(matches!(Task::Remove(path.clone()).run(&folder.0), Some(Event::Error(_))));
+        assert!(path.exists());
+    }
+
+    #[test]
+    fn files_that_cannot_be_read_are_told_and_the_others_are_there() {
+        let folder = Folder::new("faults");
+        Task::Import(metal(&folder.0, "My-Au")).run(&folder.0);
+        fs::write(metals_folder(&folder.0).join("broken.json"), "{").unwrap();
+        let listing = Listing::read(&folder.0);
+        assert_eq!((listing.metals.len(), listing.faults.len()), (1, 1));
+        assert!(listing.faults[0].contains("broken.json"));
+    }
+}

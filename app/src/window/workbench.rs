@@ -99,9 +99,9 @@ impl Workbench {
         self.requests.push(request);
     }
 
-    /// A file is being read or written by another thread.
+    /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy()
+        self.files.is_busy() || self.thumbnails.is_drawing()
     }
 
     /// Goes over to another session, away from the start page.

@@ -100,11 +100,17 @@ impl Bench {
         self.window.run_steps(3);
     }
 
+    /// Opens a menu of the bar, which comes before tabs of the same name.
+    #[track_caller]
+    pub fn open_menu(&mut self, menu: &str) {
+        self.window.get_all_by_role_and_label(Role::Button, menu).next().expect("it is in the bar").click();
+        self.window.run_steps(3);
+    }
+
     /// Picks an entry of a menu.
     #[track_caller]
     pub fn menu(&mut self, menu: &str, entry: &str) {
-        self.window.get_by_role_and_label(Role::Button, menu).click();
-        self.window.run_steps(3);
+        self.open_menu(menu);
         self.window
             .get_by(|node| node.label().is_some_and(|label| label == entry || label.starts_with(&format!("{entry} "))))
             .click();

@@ -84,7 +84,7 @@ fn menus() {
     let setup = Setup { name: "menus", scene: Some(SCENE), size: [1000.0, 800.0], drawn: false };
     let mut bench = Bench::new(setup);
     for menu in Menu::ALL {
-        bench.click_role(eframe::egui::Role::Button, menu.title());
+        bench.open_menu(menu.title());
         for entry in TABLE.iter().filter(|entry| entry.menu == menu) {
             let named = |label: &str| label == entry.title || label.starts_with(&format!("{} ", entry.title));
             let found = bench.window.get_all_by_role(eframe::egui::Role::Button);

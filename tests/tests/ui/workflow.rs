@@ -169,6 +169,12 @@ fn commands() {
     assert!(bench.window.state().as_ref().is_some_and(|w| w.messages().any(|text| text.starts_with("Copied"))));
     bench.workbench().session_mut().selection.objects = vec![keys[1].clone(), keys[2].clone()];
     ask(&mut bench, Command::PasteMaterial);
+    let materials = bench.session().scene().materials.clone();
+    for object in [1, 2] {
+        let pasted = &materials[bench.session().scene().instances[object].material];
+        let (expected, got) = (materials[count].base_color, pasted.base_color);
+        assert_eq!((got, pasted.roughness), (expected, materials[count].roughness), "it looks like the copied one");
+    }
     ask(&mut bench, Command::DuplicateMaterial);
     ask(&mut bench, Command::ApplyToSelected);
     let instances = bench.session().scene().instances.clone();

@@ -221,11 +221,12 @@ fn scene_panel() {
     assert_eq!(bench.session().scene().instances[1].name, "base");
     assert_eq!(labels(&bench).last().map(String::as_str), Some("Rename"));
 
+    let row = bench.window.get_by_role_and_label(Role::Button, "core").rect();
     bench.click("Material of base");
     let core = bench.session().document().materials.iter().position(|entry| entry.name == "core").expect("it is there");
-    // The entry of the list that dropped down lies over all else: it is the last.
-    let nodes: Vec<_> = bench.window.get_all_by_role_and_label(Role::Button, "core").collect();
-    nodes.last().expect("the list shows it").click();
+    // Beside the row of the object of that name there is now the entry of the list that dropped down.
+    let entry = bench.window.get_all_by_role_and_label(Role::Button, "core").find(|node| node.rect() != row);
+    entry.expect("the list shows it").click();
     bench.window.run_steps(3);
     assert_eq!(bench.session().scene().instances[1].material, core);
 

@@ -41,7 +41,7 @@ pub struct ViewportPanel {
     /// Width by height.
     aspect: f32,
     readout: readout::Readout,
-    boxes: overlay::Boxes,
+    outlines: overlay::Outlines,
     /// What the user was told, so that it is told once.
     told: Option<String>,
 }
@@ -55,7 +55,7 @@ impl Default for ViewportPanel {
             changed_secs: f64::NEG_INFINITY,
             aspect: 1.5,
             readout: Default::default(),
-            boxes: Default::default(),
+            outlines: Default::default(),
             told: None,
         }
     }
@@ -181,7 +181,7 @@ impl ViewportPanel {
         shown: &Shown,
     ) {
         let rect = response.rect;
-        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.boxes);
+        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.outlines);
         let selected = overlay::selection_text(context.session);
         if !selected.is_empty() {
             overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use burnish_core::scene::{Bounds, Camera, Instance, Mesh, Projection};
+use burnish_core::scene::{Camera, Instance, Mesh, Projection};
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 use glam::{Affine3A, Vec3};
 
@@ -10,22 +10,41 @@ use crate::window::session::Session;
 
 /// Length of the marks at the corners of a selected object, points.
 const MARK: f32 = 14.0;
+/// Directions in which a mesh is measured, and the vertices that are looked at.
+const HULL: usize = 96;
+const THINNED: usize = 20_000;
 /// Behind text over the picture.
 const SHADE: Color32 = Color32::from_black_alpha(150);
 
-/// Boxes of meshes that were selected, so that a frame does not visit all their vertices.
+/// Points of selected meshes, so that a frame does not visit all their vertices.
 #[derive(Default)]
-pub struct Boxes(Vec<(Arc<Mesh>, Bounds)>);
+pub struct Outlines(Vec<(Arc<Mesh>, Vec<Vec3>)>);
 
-impl Boxes {
-    fn of(&mut self, mesh: &Arc<Mesh>) -> Bounds {
-        if let Some((_, bounds)) = self.0.iter().find(|(known, _)| Arc::ptr_eq(known, mesh)) {
-            return *bounds;
-        }
-        let bounds = mesh.positions.iter().fold(Bounds::EMPTY, |bounds, position| bounds.including(*position));
-        self.0.push((mesh.clone(), bounds));
-        bounds
+impl Outlines {
+    fn of(&mut self, mesh: &Arc<Mesh>) -> &[Vec3] {
+        let known = self.0.iter().position(|(known, _)| Arc::ptr_eq(known, mesh));
+        let place = known.unwrap_or_else(|| {
+            self.0.push((mesh.clone(), hull(&mesh.positions)));
+            self.0.len() - 1
+        });
+        self.0.get(place).map_or(&[], |(_, points)| points)
     }
+}
+
+/// The points that lie farthest in many directions: what they enclose is nearly the mesh.
+fn hull(positions: &[Vec3]) -> Vec<Vec3> {
+    let directions = (0..HULL).map(|i| {
+        // A spiral with equal areas between its turns.
+        let y = 1.0 - (2.0 * i as f32 + 1.0) / HULL as f32;
+        let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
+        let r = (1.0 - y * y).sqrt();
+        Vec3::new(r * cos, y, r * sin)
+    });
+    // Large meshes are thinned out: the marks need no more.
+    let step = (positions.len() / THINNED).max(1);
+    let thinned: Vec<Vec3> = positions.iter().copied().step_by(step).collect();
+    let farthest = |d: Vec3| thinned.iter().copied().max_by(|a, b| a.dot(d).total_cmp(&b.dot(d)));
+    directions.filter_map(farthest).collect()
 }
 
 /// Selected objects with their place in the scene.
@@ -36,17 +55,17 @@ fn selected(session: &Session) -> Vec<&Instance> {
 }
 
 /// Marks the corners of the selected objects.
-pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camera, boxes: &mut Boxes) {
+pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camera, outlines: &mut Outlines) {
     let scene = session.scene();
     let chosen = selected(session);
     if chosen.is_empty() {
-        boxes.0.clear();
+        outlines.0.clear();
     }
     let painter = ui.painter_at(rect);
     let color = ui.visuals().selection.bg_fill.gamma_multiply(1.6);
     for instance in chosen.into_iter().filter(|instance| instance.visible) {
         let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
-        let Some(outline) = project_box(boxes.of(mesh), instance.world_from_local, camera, rect) else { continue };
+        let Some(outline) = project_all(outlines.of(mesh), instance.world_from_local, camera, rect) else { continue };
         for (corner, x, y) in [
             (outline.left_top(), 1.0, 1.0),
             (outline.right_top(), -1.0, 1.0),
@@ -63,18 +82,13 @@ pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camer
     }
 }
 
-/// The rectangle around a box as the camera sees it; `None` where a corner is behind the camera.
-fn project_box(bounds: Bounds, world_from_local: Affine3A, camera: &Camera, rect: Rect) -> Option<Rect> {
-    if bounds.is_empty() {
-        return None;
-    }
+/// The rectangle around points as the camera sees them; `None` where one is behind the camera.
+fn project_all(points: &[Vec3], world_from_local: Affine3A, camera: &Camera, rect: Rect) -> Option<Rect> {
     let mut outline = Rect::NOTHING;
-    for corner in 0..8 {
-        let pick = Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32);
-        let local = bounds.min + pick * (bounds.max - bounds.min);
-        outline.extend_with(project(world_from_local.transform_point3(local), camera, rect)?);
+    for point in points {
+        outline.extend_with(project(world_from_local.transform_point3(*point), camera, rect)?);
     }
-    Some(outline.expand(3.0))
+    outline.is_positive().then(|| outline.expand(3.0))
 }
 
 /// Where a world position is seen; `None` behind the camera.
@@ -101,7 +115,7 @@ pub fn selection_text(session: &Session) -> String {
     let material = session.scene().materials.get(first.material).map_or("", |material| material.name.as_str());
     let name = if first.name.is_empty() { "unnamed" } else { &first.name };
     match rest.len() {
-        0 => format!("{name}: {material}"),
+        0 => format!("{name}, material {material}"),
         more => format!("{name} and {more} more"),
     }
 }
@@ -131,7 +145,7 @@ pub fn message_ui(ui: &mut egui::Ui, rect: Rect, text: &str) {
     ui.put(place.expand2(vec2(2.0, 0.0)), label.selectable(false).wrap());
 }
 
-/// The middle of the picture in words of egui.
+/// Where a point of the window lies in the picture, 0 to 1 from its top left.
 pub fn relative(rect: Rect, pointer: Pos2) -> glam::Vec2 {
     let size = rect.size().max(pos2(1.0, 1.0).to_vec2());
     let at = (pointer - rect.min) / size;
@@ -158,14 +172,32 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_reaches_behind_the_camera_has_no_outline() {
+    fn what_reaches_behind_the_camera_has_no_outline() {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(100.0, 100.0));
         let camera = Camera::look_at("c", Vec3::new(0.0, 0.0, 0.5), Vec3::ZERO, 0.7);
-        let unit = Bounds { min: Vec3::splat(-1.0), max: Vec3::ONE };
-        assert_eq!(project_box(unit, Affine3A::IDENTITY, &camera, rect), None);
+        let corners: Vec<Vec3> =
+            [-1.0, 1.0].into_iter().flat_map(|z| [Vec3::new(-1.0, -1.0, z), Vec3::new(1.0, 1.0, z)]).collect();
+        assert_eq!(project_all(&corners, Affine3A::IDENTITY, &camera, rect), None);
         let far = Camera::look_at("c", Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, 0.7);
-        let outline = project_box(unit, Affine3A::IDENTITY, &far, rect).unwrap();
+        let outline = project_all(&corners, Affine3A::IDENTITY, &far, rect).unwrap();
         assert!(outline.contains(rect.center()) && rect.contains_rect(outline));
-        assert_eq!(project_box(Bounds::EMPTY, Affine3A::IDENTITY, &far, rect), None);
+        assert_eq!(project_all(&[], Affine3A::IDENTITY, &far, rect), None);
+    }
+
+    #[test]
+    fn the_hull_of_a_ball_is_nearly_as_wide_as_the_ball() {
+        let ball: Vec<Vec3> = (0..5000)
+            .map(|i| {
+                let y = 1.0 - (2.0 * i as f32 + 1.0) / 5000.0;
+                let (sin, cos) = (i as f32 * 2.4).sin_cos();
+                Vec3::new((1.0 - y * y).sqrt() * cos, y, (1.0 - y * y).sqrt() * sin)
+            })
+            .collect();
+        let points = hull(&ball);
+        let width = |d: Vec3| points.iter().map(|p| p.dot(d)).fold(f32::MIN, f32::max);
+        for direction in [Vec3::X, Vec3::NEG_Y, Vec3::new(0.6, 0.0, 0.8)] {
+            assert!(width(direction) > 0.97, "{direction} {}", width(direction));
+        }
+        assert!(hull(&[]).is_empty());
     }
 }

@@ -143,7 +143,7 @@ fn a_click_selects_what_is_there_and_names_it() {
     let session = &bench.state().session;
     assert_eq!(session.selection.objects.len(), 1);
     let text = overlay::selection_text(session);
-    assert!(text.contains(": "), "{text}");
+    assert!(text.contains(", material "), "{text}");
     bench.get_by_label(&text);
     assert!(session.history().past().is_empty(), "a click is no edit");
 }

@@ -182,7 +182,7 @@ fn targets(bench: &Bench, wanted: impl Fn(Role) -> bool) -> Vec<(String, Role, e
         let alone = LEFT_ALONE.iter().any(|left| label == *left || label.starts_with(&format!("{left} ")));
         (wanted(role) && !alone).then_some(())?;
         let rect = accesskit.raw_bounds().map(|_| node.rect())?;
-        area.contains(rect.center()).then(|| (label, role, rect))
+        area.contains(rect.center()).then_some((label, role, rect))
     });
     named.collect()
 }

@@ -160,9 +160,12 @@ fn a_preset_that_is_dropped_goes_on_the_material_under_it() {
     bench.drop_at(at + vec2(2.0, 0.0));
     bench.run_steps(2);
     let bench = bench.state();
-    let entry = bench.session.material().unwrap();
-    assert_eq!(entry.preset.as_ref().map(|preset| preset.id.as_str()), Some("Cu"), "{:?}", bench.requests);
-    assert_eq!(bench.session.history().past().len(), 1);
+    let wish = bench.requests.iter().find_map(|request| match request {
+        Request::AssignPreset { preset, materials } => Some((preset.as_str(), materials.as_slice())),
+        _ => None,
+    });
+    assert_eq!(wish, Some(("Cu", [bench.session.selection.material].as_slice())), "{:?}", bench.requests);
+    assert_eq!(bench.session.selection.objects.len(), 1);
 }
 
 #[test]

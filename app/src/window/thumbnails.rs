@@ -25,7 +25,7 @@ use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
 /// Pixels of an edge.
 const SIZE: u32 = 96;
 /// Jittered frames of a ball.
-const FRAMES: u32 = 8;
+const FRAMES: u32 = 4;
 /// Part of the new in every hash: raise it when balls shall look different.
 const LOOK: u32 = 1;
 /// Full vertical angle of the camera: a long lens.
@@ -93,8 +93,9 @@ impl Thumbnails {
         Thumbnails { folder, ..Thumbnails::default() }
     }
 
-    /// Takes over what was drawn; once a frame. Without `passes` there are no balls. Returns what went wrong, once.
-    pub fn frame(&mut self, ctx: &egui::Context, passes: Option<&Arc<Passes>>) -> Option<String> {
+    /// Takes over what was drawn; once a frame. Without `passes` there are no balls, and while the viewport has not come
+    /// to rest they wait. Returns what went wrong, once.
+    pub fn frame(&mut self, ctx: &egui::Context, passes: Option<&Arc<Passes>>, rests: bool) -> Option<String> {
         let Some(passes) = passes else {
             self.worker = None;
             self.balls.clear();
@@ -109,7 +110,11 @@ impl Thumbnails {
         let active = ctx.input(|input| {
             input.pointer.any_down() || f64::from(input.pointer.time_since_last_movement()) < QUIET_SECS
         });
-        worker.busy.store(active, Ordering::Relaxed);
+        worker.busy.store(active || !rests, Ordering::Relaxed);
+        if active && self.balls.values().any(Option::is_none) {
+            // Without another frame nobody would notice that the hand came to rest.
+            ctx.request_repaint_after_secs(QUIET_SECS as f32);
+        }
         let mut fault = None;
         while let Ok(drawn) = worker.drawn.try_recv() {
             match drawn {

@@ -19,6 +19,9 @@ use super::toasts::Toasts;
 use super::user_presets::UserPresets;
 use super::{edits, layout, shortcuts, theme};
 
+/// Frames of the viewport's picture after which other pictures may be drawn.
+const RESTING_FRAMES: u32 = 4;
+
 /// How the window starts.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -161,7 +164,8 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
-        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes()) {
+        let rests = stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
+        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
             requests.push(Request::Error(fault));
         }
         for preset in own.frame(ui.ctx(), requests) {

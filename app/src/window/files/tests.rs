@@ -241,7 +241,7 @@ fn dropped_files_open_light_and_ask_for_a_slot() {
     let flat = burnish_core::picture::Picture::filled(2, 2, glam::Vec4::ONE);
     burnish_core::file::write_picture(&flat, &picture, Default::default(), 0.0).unwrap();
     drop(&mut window, &[&picture]);
-    click(&mut window, "Roughness");
+    click(&mut window, "Metallic roughness");
     until(&mut window, |workbench| !workbench.is_busy() && workbench.session().history().past().len() == 2);
     assert_eq!(session(&window).document().texture_files(), [picture.to_string_lossy()]);
 }

@@ -160,12 +160,11 @@ fn a_preset_that_is_dropped_goes_on_the_material_under_it() {
     bench.drop_at(at + vec2(2.0, 0.0));
     bench.run_steps(2);
     let bench = bench.state();
-    let wish = bench.requests.iter().find_map(|request| match request {
-        Request::AssignPreset { preset, materials } => Some((preset.as_str(), materials.as_slice())),
-        _ => None,
+    let shown = bench.session.selection.material;
+    let asked = bench.requests.iter().any(|request| {
+        matches!(request, Request::AssignPreset { preset, materials } if preset == "Cu" && materials == &[shown])
     });
-    assert_eq!(wish, Some(("Cu", [bench.session.selection.material].as_slice())), "{:?}", bench.requests);
-    assert_eq!(bench.session.selection.objects.len(), 1);
+    assert!(asked, "{:?}", bench.requests);
 }
 
 #[test]

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use burnish::window::offscreen::Offscreen;
 use burnish::window::{LossLog, Stage, Trial as Failure};
 use burnish_core::color::tone::ToneMap;
+use burnish_core::document::{self, Curves};
 use burnish_core::lighting::classical::PARAMS;
 use burnish_core::param::Settings;
-use burnish_core::scene::{Scene, gallery};
+use burnish_core::scene::Scene;
 use burnish_render::Frame;
 use burnish_tests::{Need, trial};
 use glam::UVec2;
@@ -23,7 +24,8 @@ pub fn trials() -> Vec<Trial> {
 fn setup() -> (Offscreen, Arc<Scene>, Frame) {
     let size = UVec2::new(96, 64);
     let offscreen = Offscreen::new(size).expect("an adapter");
-    let scene = Arc::new(gallery::open("gallery:workbench").expect("a gallery scene"));
+    let opened = document::open("gallery:workbench").expect("a gallery scene");
+    let scene = document::resolve(&opened.document, &opened.sources, &mut Curves::default()).scene;
     let camera = scene.cameras.first().expect("a camera").clone();
     let (settings, tone) = (Settings::new(PARAMS), ToneMap::default());
     let frame = Frame { size, camera, settings, tone, exposure_ev: 0.0, moving: true };

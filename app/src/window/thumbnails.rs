@@ -78,6 +78,8 @@ pub struct Thumbnails {
     folder: Option<PathBuf>,
     worker: Option<Worker>,
     balls: HashMap<String, Option<TextureHandle>>,
+    /// The worker ended early: what it was asked for does not come.
+    failed: bool,
 }
 
 struct Worker {
@@ -104,6 +106,7 @@ impl Thumbnails {
         if !self.worker.as_ref().is_some_and(|worker| Arc::ptr_eq(&worker.passes, passes)) {
             // Balls that an earlier device did not get done are asked for again.
             self.balls.retain(|_, ball| ball.is_some());
+            self.failed = false;
             self.worker = Some(Worker::start(passes, self.folder.clone(), ctx));
         }
         let worker = self.worker.as_ref()?;
@@ -122,10 +125,18 @@ impl Thumbnails {
                     let texture = ctx.load_texture(format!("ball {hash}"), image, TextureOptions::LINEAR);
                     self.balls.insert(hash, Some(texture));
                 }
-                Err(words) => fault = Some(words),
+                Err(words) => {
+                    self.failed = true;
+                    fault = Some(words);
+                }
             }
         }
         fault
+    }
+
+    /// Balls were asked for and are on their way.
+    pub fn is_drawing(&self) -> bool {
+        self.worker.is_some() && !self.failed && self.balls.values().any(Option::is_none)
     }
 
     /// The ball of a subject; `None` until it is drawn.

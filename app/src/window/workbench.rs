@@ -102,9 +102,9 @@ impl Workbench {
         self.requests.push(request);
     }
 
-    /// A file is being read or written by another thread.
+    /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy()
+        self.files.is_busy() || self.thumbnails.is_drawing()
     }
 
     /// Goes over to another session, away from the start page.
@@ -127,6 +127,14 @@ impl Workbench {
     pub fn show_panel(&mut self, pane: Pane) {
         layout::show(&mut self.tree, pane);
         self.rearranged = true;
+    }
+
+    /// Puts a panel away.
+    pub fn hide_panel(&mut self, pane: Pane) {
+        if layout::is_shown(&self.tree, pane) {
+            layout::toggle(&mut self.tree, pane);
+            self.rearranged = true;
+        }
     }
 
     /// Messages that are shown.

@@ -202,7 +202,12 @@ impl Gpu {
     pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
         let failure = Arc::new(Failure::default());
         let uncaptured = failure.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| uncaptured.set(error.to_string())));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let text = error.to_string();
+            if !is_surface_race(&text) {
+                uncaptured.set(text);
+            }
+        }));
         let lost = failure.clone();
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
@@ -254,6 +259,12 @@ impl Gpu {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| GpuError::Failed(e.to_string()))?;
         self.check()
     }
+}
+
+/// A window that changes its size while another thread draws: its surface is refused once and configured again by the
+/// next frame. Nothing is wrong with the device. wgpu has no type for it, only these words.
+fn is_surface_race(text: &str) -> bool {
+    text.contains("come idle before reconfiguring the Surface")
 }
 
 fn refusal(report: &AdapterReport) -> String {

@@ -5,6 +5,8 @@
 
 #[path = "images/environment.rs"]
 mod environment;
+#[path = "images/losses.rs"]
+mod losses;
 #[path = "images/viewport.rs"]
 mod viewport;
 
@@ -38,6 +40,7 @@ fn main() {
     trials.push(trial("a lost device is an error from then on", &[Need::Gpu], lost_device));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
     trials.extend(environment::trials());
+    trials.extend(losses::trials());
     trials.extend(viewport::trials());
     libtest_mimic::run(&arguments, trials).exit();
 }

@@ -1,6 +1,12 @@
 //! Commands that edit the document: materials and objects.
 
-use burnish_core::document::Document;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use burnish_core::document::{Document, MaterialEntry, TextureChoice, role_key};
+use burnish_core::material::params::{self, PARAMS};
+use burnish_core::material::{Material, TextureRef, TextureRole};
+use serde_json::{Map, Value};
 
 use super::commands::Command;
 use super::request::{Request, Requests};
@@ -36,10 +42,36 @@ pub fn command(command: Command, session: &mut Session, requests: &mut Requests)
 }
 
 fn copy(session: &mut Session, requests: &mut Requests) {
-    session.clipboard = session.material().cloned();
+    session.clipboard = whole(session).map(Arc::new);
     if let Some(copied) = &session.clipboard {
         requests.push(Request::Notice(format!("Copied material `{}`", copied.name)));
     }
+}
+
+/// The shown material with every factor and texture stated: it looks the same on a material of another source.
+fn whole(session: &Session) -> Option<MaterialEntry> {
+    let index = session.selection.material;
+    let mut entry = MaterialEntry::clone(session.material()?);
+    let material = session.scene().materials.get(index)?;
+    let base = session.resolved().base.get(index)?;
+    for (key, json) in factors(material) {
+        entry.values.entry(key).or_insert(json);
+    }
+    for (role, choice) in textures(base) {
+        entry.textures.entry(role).or_insert(choice);
+    }
+    Some(entry)
+}
+
+/// Values of all factors as documents store them.
+fn factors(material: &Material) -> impl Iterator<Item = (String, Value)> {
+    PARAMS.iter().filter_map(|spec| Some((spec.key.to_string(), spec.json(params::get(material, spec.key)?))))
+}
+
+/// What stands in all texture slots of a material of the model.
+fn textures(material: &Material) -> impl Iterator<Item = (String, TextureChoice)> {
+    let choice = |slot: Option<TextureRef>| slot.map_or(TextureChoice::None, |slot| TextureChoice::Image(slot.image));
+    TextureRole::ALL.into_iter().zip(material.textures()).map(move |(role, slot)| (role_key(role), choice(slot)))
 }
 
 fn paste(session: &mut Session) {
@@ -49,9 +81,22 @@ fn paste(session: &mut Session) {
         [one] => session.document().materials.get(*one).map(|entry| entry.name.clone()).unwrap_or_default(),
         many => format!("{} materials", many.len()),
     };
+    let pasted: Vec<(usize, MaterialEntry)> = (targets.into_iter())
+        .map(|index| {
+            let mut pasted = MaterialEntry::clone(&copied);
+            // What the source of the target says already is no change of it.
+            if let Some(base) = session.resolved().base.get(index) {
+                let (factors, textures): (Map<_, _>, BTreeMap<_, _>) =
+                    (factors(base).collect(), textures(base).collect());
+                pasted.values.retain(|key, json| factors.get(key) != Some(json));
+                pasted.textures.retain(|role, choice| textures.get(role) != Some(choice));
+            }
+            (index, pasted)
+        })
+        .collect();
     session.edit("Paste material", &target, |document| {
-        for index in targets {
-            document.paste_material(index, &copied);
+        for (index, pasted) in &pasted {
+            document.paste_material(*index, pasted);
         }
     });
 }

@@ -25,7 +25,7 @@ use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
 /// Pixels of an edge.
 const SIZE: u32 = 96;
 /// Jittered frames of a ball.
-const FRAMES: u32 = 8;
+const FRAMES: u32 = 4;
 /// Part of the new in every hash: raise it when balls shall look different.
 const LOOK: u32 = 1;
 /// Full vertical angle of the camera: a long lens.
@@ -78,6 +78,8 @@ pub struct Thumbnails {
     folder: Option<PathBuf>,
     worker: Option<Worker>,
     balls: HashMap<String, Option<TextureHandle>>,
+    /// The worker ended early: what it was asked for does not come.
+    failed: bool,
 }
 
 struct Worker {
@@ -93,8 +95,9 @@ impl Thumbnails {
         Thumbnails { folder, ..Thumbnails::default() }
     }
 
-    /// Takes over what was drawn; once a frame. Without `passes` there are no balls. Returns what went wrong, once.
-    pub fn frame(&mut self, ctx: &egui::Context, passes: Option<&Arc<Passes>>) -> Option<String> {
+    /// Takes over what was drawn; once a frame. Without `passes` there are no balls, and while the viewport has not come
+    /// to rest they wait. Returns what went wrong, once.
+    pub fn frame(&mut self, ctx: &egui::Context, passes: Option<&Arc<Passes>>, rests: bool) -> Option<String> {
         let Some(passes) = passes else {
             self.worker = None;
             self.balls.clear();
@@ -103,13 +106,18 @@ impl Thumbnails {
         if !self.worker.as_ref().is_some_and(|worker| Arc::ptr_eq(&worker.passes, passes)) {
             // Balls that an earlier device did not get done are asked for again.
             self.balls.retain(|_, ball| ball.is_some());
+            self.failed = false;
             self.worker = Some(Worker::start(passes, self.folder.clone(), ctx));
         }
         let worker = self.worker.as_ref()?;
         let active = ctx.input(|input| {
             input.pointer.any_down() || f64::from(input.pointer.time_since_last_movement()) < QUIET_SECS
         });
-        worker.busy.store(active, Ordering::Relaxed);
+        worker.busy.store(active || !rests, Ordering::Relaxed);
+        if active && self.balls.values().any(Option::is_none) {
+            // Without another frame nobody would notice that the hand came to rest.
+            ctx.request_repaint_after_secs(QUIET_SECS as f32);
+        }
         let mut fault = None;
         while let Ok(drawn) = worker.drawn.try_recv() {
             match drawn {
@@ -117,10 +125,18 @@ impl Thumbnails {
                     let texture = ctx.load_texture(format!("ball {hash}"), image, TextureOptions::LINEAR);
                     self.balls.insert(hash, Some(texture));
                 }
-                Err(words) => fault = Some(words),
+                Err(words) => {
+                    self.failed = true;
+                    fault = Some(words);
+                }
             }
         }
         fault
+    }
+
+    /// Balls were asked for and are on their way.
+    pub fn is_drawing(&self) -> bool {
+        self.worker.is_some() && !self.failed && self.balls.values().any(Option::is_none)
     }
 
     /// The ball of a subject; `None` until it is drawn.

@@ -188,7 +188,7 @@ pub fn choice_ui<T: AsRef<str>>(
     hover: &str,
 ) -> Option<usize> {
     let mut picked = None;
-    let shown = options.get(index).map_or("", AsRef::as_ref);
+    let shown = options.get(index).map_or("choose...", AsRef::as_ref);
     let list = egui::ComboBox::from_id_salt(label).width(width).selected_text(shown).truncate().show_ui(ui, |ui| {
         for (place, option) in options.iter().enumerate() {
             if ui.selectable_label(place == index, option.as_ref()).clicked() && place != index {

@@ -19,6 +19,9 @@ use super::toasts::Toasts;
 use super::user_presets::UserPresets;
 use super::{edits, layout, shortcuts, theme};
 
+/// Frames of the viewport's picture after which other pictures may be drawn.
+const RESTING_FRAMES: u32 = 4;
+
 /// How the window starts.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -99,9 +102,9 @@ impl Workbench {
         self.requests.push(request);
     }
 
-    /// A file is being read or written by another thread.
+    /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy()
+        self.files.is_busy() || self.thumbnails.is_drawing()
     }
 
     /// Goes over to another session, away from the start page.
@@ -124,6 +127,14 @@ impl Workbench {
     pub fn show_panel(&mut self, pane: Pane) {
         layout::show(&mut self.tree, pane);
         self.rearranged = true;
+    }
+
+    /// Puts a panel away.
+    pub fn hide_panel(&mut self, pane: Pane) {
+        if layout::is_shown(&self.tree, pane) {
+            layout::toggle(&mut self.tree, pane);
+            self.rearranged = true;
+        }
     }
 
     /// Messages that are shown.
@@ -161,7 +172,8 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
-        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes()) {
+        let rests = stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
+        if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
             requests.push(Request::Error(fault));
         }
         for preset in own.frame(ui.ctx(), requests) {

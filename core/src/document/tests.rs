@@ -202,3 +202,33 @@ fn a_material_in_use_is_not_removed() {
     document.assignments.clear();
     assert!(document.remove_material(index));
 }
+
+#[test]
+fn a_saved_material_brings_its_factors_and_metal_to_any_material() {
+    use crate::material::saved::{SavedMaterial, SavedMetal};
+    let Opened { mut document, sources, .. } = workbench();
+    let mut curves = Curves::default();
+    let base = resolve(&document, &sources, &mut curves).base;
+    let saved = |material: &crate::material::Material, metal| SavedMaterial::new("s", Vec::new(), material, metal);
+    let own = Preset { id: "Mine".into(), ..gold().clone() };
+    let metal =
+        SavedMetal { id: "Mine".into(), fresnel: Some("schlick".into()), constants: Some(Box::new(own.clone())) };
+    for (index, start) in base.iter().enumerate() {
+        let other = (index + 1) % base.len();
+        document.assign_saved(index, &saved(&base[other], Some(metal.clone())), start, Assigned::KeepTextures);
+    }
+    let scene = resolve(&document, &sources, &mut curves).scene;
+    for (index, material) in scene.materials.iter().take(base.len()).enumerate() {
+        let other = &base[(index + 1) % base.len()];
+        for spec in crate::material::params::PARAMS {
+            let key = spec.key;
+            let (now, then) = (crate::material::params::get(material, key), crate::material::params::get(other, key));
+            assert_eq!(now, then, "{key} of {}", material.name);
+        }
+        assert!(matches!(&material.reflectance, Reflectance::Preset { id, .. } if id == "Mine"));
+    }
+    assert_eq!(document.presets.len(), 1, "the metal is stored once");
+    assert_eq!(document.materials[0].preset.as_ref().unwrap().fresnel.as_deref(), Some("schlick"));
+    document.assign_saved(0, &saved(&base[0], None), &base[0], Assigned::KeepTextures);
+    assert_eq!((&document.materials[0].preset, document.materials[0].values.len()), (&None, 0));
+}

@@ -139,7 +139,9 @@ impl Live {
             self.condition = Condition::GivenUp;
         }
         self.status.drawn = Drawn::default();
-        let message = if again { format!("{error}. The picture is made anew.") } else { LossLog::GIVEN_UP.into() };
+        // Words of a driver come with line breaks.
+        let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        let message = if again { format!("{reason}. The picture is made anew.") } else { LossLog::GIVEN_UP.into() };
         Shown { settled: !again, ..self.shown(Some(message), true) }
     }
 

@@ -51,7 +51,7 @@ fn form_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, material:
     ui.horizontal(|ui| {
         let gap = ui.spacing().item_spacing.x;
         let name = name_ui(ui, "Fresnel form", place != 0, 0.36 * ui.available_width()).on_hover_text(FORMS_HELP);
-        let width = ui.available_width() - 18.0 - gap;
+        let width = ui.available_width() - 18.0 - 2.0 * gap;
         picked = choice_ui(ui, "Fresnel form", &words, place, width, Some(&name), FORMS_HELP);
         if reset_ui(ui, "Fresnel form", place != 0) {
             picked = Some(0);

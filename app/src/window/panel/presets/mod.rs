@@ -4,6 +4,9 @@ mod details;
 mod item;
 mod tile;
 
+#[cfg(test)]
+mod tests;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

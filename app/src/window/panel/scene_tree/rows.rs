@@ -110,11 +110,14 @@ fn named(name: &str) -> &str {
 
 /// A row of a list that takes the width up to `reserved`.
 fn name_ui(ui: &mut egui::Ui, text: RichText, selected: bool, reserved: f32) -> egui::Response {
+    let name = text.text().to_string();
     let width = (ui.available_width() - reserved).max(24.0);
     // Text on the right, though empty, keeps the name on the left.
     let button = egui::Button::selectable(selected, text).truncate().right_text("");
     let button = button.min_size(egui::vec2(width, HEIGHT));
-    ui.allocate_ui(egui::vec2(width, HEIGHT), |ui| ui.add(button)).inner
+    let row = ui.allocate_ui(egui::vec2(width, HEIGHT), |ui| ui.add(button)).inner;
+    row.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &name));
+    row
 }
 
 fn object_ui(ui: &mut egui::Ui, object: usize, session: &Session, actions: &mut Vec<Action>) {

@@ -1,0 +1,98 @@
+//! How every panel, page and menu looks, to the pixel, with the viewport painted flat.
+
+use burnish::window::{Command, Menu, Pane, Request, TABLE};
+use burnish_tests::{Need, repository, trial};
+use egui_kittest::SnapshotOptions;
+use libtest_mimic::Trial;
+
+use super::bench::{Bench, Setup};
+
+const SCENE: &str = "gallery:workbench";
+
+pub fn trials() -> Vec<Trial> {
+    let gpu: &[Need] = &[Need::Gpu];
+    vec![
+        trial("every_panel_looks_as_accepted", gpu, every_panel),
+        trial("the_window_looks_as_accepted_in_both_themes", gpu, whole_window),
+        trial("start_page_palette_and_shortcut_page_look_as_accepted", gpu, pages),
+        trial("every_menu_shows_its_commands", &[], menus),
+    ]
+}
+
+/// Fails where something looked otherwise.
+fn judge(bench: &mut Bench) {
+    let faults: Vec<String> =
+        bench.window.take_snapshot_results().into_inner().iter().map(ToString::to_string).collect();
+    assert!(faults.is_empty(), "{}\nlook at the .diff.png files; UPDATE_SNAPSHOTS=1 accepts", faults.join("\n"));
+}
+
+fn look(bench: &mut Bench, name: &str) {
+    bench.window.run_ok();
+    let folder = repository().join("tests/tests/ui/snapshots");
+    let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);
+    bench.window.snapshot_options(name, &options);
+}
+
+fn every_panel() {
+    let setup = Setup { name: "panels", scene: Some(SCENE), size: [380.0, 620.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    assert!(!Pane::ALL.is_empty());
+    for shown in Pane::ALL {
+        for pane in Pane::ALL {
+            bench.workbench().show_panel(pane);
+        }
+        for pane in Pane::ALL.into_iter().filter(|pane| *pane != shown) {
+            // One may have come to the front where another was put away.
+            bench.workbench().show_panel(pane);
+            bench.workbench().hide_panel(pane);
+        }
+        bench.workbench().show_panel(shown);
+        look(&mut bench, &format!("panel_{}", shown.title().to_lowercase()));
+    }
+    judge(&mut bench);
+}
+
+fn whole_window() {
+    let setup = Setup { name: "window", scene: Some(SCENE), size: [1280.0, 800.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    for (dark, name) in [(true, "window_dark"), (false, "window_light")] {
+        bench.workbench().preferences_mut().dark = Some(dark);
+        look(&mut bench, name);
+    }
+    judge(&mut bench);
+}
+
+fn pages() {
+    let setup = Setup { name: "pages", scene: None, size: [1000.0, 700.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    look(&mut bench, "start_page");
+    bench.workbench().preferences_mut().dark = Some(false);
+    look(&mut bench, "start_page_light");
+    bench.workbench().preferences_mut().dark = None;
+    bench.workbench().ask(Request::Command(Command::Palette));
+    look(&mut bench, "palette");
+    bench.workbench().ask(Request::Command(Command::Palette));
+    bench.window.run_steps(3);
+    bench.workbench().ask(Request::Command(Command::Shortcuts));
+    look(&mut bench, "shortcuts");
+    judge(&mut bench);
+}
+
+/// Also that every entry has a menu: what is in no menu is found by nobody.
+fn menus() {
+    use egui_kittest::kittest::Queryable;
+    let setup = Setup { name: "menus", scene: Some(SCENE), size: [1000.0, 800.0], drawn: false };
+    let mut bench = Bench::new(setup);
+    for menu in Menu::ALL {
+        bench.open_menu(menu.title());
+        for entry in TABLE.iter().filter(|entry| entry.menu == menu) {
+            let named = |label: &str| label == entry.title || label.starts_with(&format!("{} ", entry.title));
+            let found = bench.window.get_all_by_role(eframe::egui::Role::Button);
+            let found = found.into_iter().any(|node| {
+                egui_kittest::kittest::NodeT::accesskit_node(&node).label().is_some_and(|label| named(&label))
+            });
+            assert!(found, "{}", entry.title);
+        }
+        bench.keys(eframe::egui::Modifiers::NONE, eframe::egui::Key::Escape);
+    }
+}

@@ -22,7 +22,8 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
         return;
     };
     let metal = document.metal(&used.id);
-    ui.horizontal(|ui| {
+    // Names of alloys are longer than the panel is wide: they break, they do not push it open.
+    ui.horizontal_wrapped(|ui| {
         match metal {
             Some(metal) => ui.strong(format!("Metal: {}", title(metal))),
             None => ui.colored_label(ui.visuals().error_fg_color, format!("Unknown metal `{}`", used.id)),
@@ -37,7 +38,7 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
     form_ui(ui, context, index, &entry.name, used.fresnel.as_deref());
     let texts = context.session.scene().materials.get(index).map(overrides).unwrap_or_default();
     for text in texts {
-        ui.small(format!("• {text}"));
+        ui.add(egui::Label::new(egui::RichText::new(format!("• {text}")).small()).wrap());
     }
 }
 

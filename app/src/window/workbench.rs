@@ -102,6 +102,11 @@ impl Workbench {
         self.requests.push(request);
     }
 
+    /// The window was told to close, with nothing left to ask.
+    pub fn is_ending(&self) -> bool {
+        self.files.is_ending()
+    }
+
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
         self.files.is_busy() || self.thumbnails.is_drawing()

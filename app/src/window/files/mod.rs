@@ -114,6 +114,11 @@ impl Files {
         self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
     }
 
+    /// The window was told to close, with nothing left to ask.
+    pub fn is_ending(&self) -> bool {
+        self.quitting
+    }
+
     /// Writes the document, saved or not, into the recovery file and waits for it: for when the program is about to end badly.
     pub fn keep_now(&mut self, session: &Session) -> Result<(), String> {
         self.kept_revision = Some(session.revision);

@@ -186,11 +186,7 @@ fn unsaved_changes_are_asked_about() {
     window.run_steps(3);
     click(&mut window, "Save");
     enter_path(&mut window, &folder.0.join("leaf.burnish"));
-    let start = Instant::now();
-    while !said(&window, &ViewportCommand::Close) {
-        assert!(start.elapsed() < PATIENCE, "it did not close");
-        window.step();
-    }
+    until(&mut window, Workbench::is_ending);
     assert!(folder.0.join("leaf.burnish").is_file());
     assert_eq!(std::fs::read_dir(folder.0.join("user/recovery")).map_or(0, Iterator::count), 0);
 }

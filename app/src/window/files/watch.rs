@@ -33,6 +33,7 @@ pub fn stamps(paths: impl IntoIterator<Item = String>) -> Stamps {
 }
 
 /// Looks at the files of the document.
+#[derive(Default)]
 pub struct Watch {
     shared: Arc<Shared>,
     started: bool,
@@ -58,12 +59,6 @@ impl Shared {
     /// No holder of the lock leaves the state half changed.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Default for Watch {
-    fn default() -> Self {
-        Watch { shared: Arc::default(), started: false }
     }
 }
 

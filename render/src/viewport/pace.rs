@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use glam::UVec2;
 
-/// Milliseconds of a frame while something moves. The window itself takes about 25 of the 125 of 8 frames a second.
-const MOVING_MS: f64 = 70.0;
+/// Milliseconds of a frame while something moves. The window takes about 60 more, of the 125 of 8 frames a second.
+const MOVING_MS: f64 = 45.0;
 /// Milliseconds of refinement between two looks at the input.
 const STILL_MS: f64 = 90.0;
 /// Time for the cubes of an environment between two looks at the input: on a software rasteriser, where nothing else is

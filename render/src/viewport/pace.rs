@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn moving_frames_keep_their_budget_where_they_can() {
         assert_eq!(settled(1.0, 1e-5), WINDOW);
-        for pixel in [1e-4, 3e-4, 1e-3] {
+        for pixel in [1e-4, 3e-4, 8e-4] {
             let size = settled(20.0, pixel);
             assert!(20.0 + pixel * pixels(size) <= MOVING_MS, "{size} at {pixel} ms a pixel");
             assert!(size.x < WINDOW.x && size.x >= 200, "{size} at {pixel} ms a pixel");

@@ -18,6 +18,8 @@ const FORMAT: &str = "burnish-recovery";
 const DELAY: Duration = Duration::from_secs(1);
 /// The file is written at most this often.
 const PAUSE: Duration = Duration::from_secs(3);
+/// After this time a write that failed is tried again.
+const RETRY: Duration = Duration::from_secs(10);
 /// How long `--recover` waits for the program before to end.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -31,7 +33,8 @@ struct Shared {
     folder: PathBuf,
     slot: Mutex<Slot>,
     changed: Condvar,
-    /// Held while the file is written, so that an older document never takes the place of a newer one.
+    /// Held from taking a document out of the slot until it is written, so that an older one never takes the place of
+    /// a newer one. Locked before the slot where both are.
     file: Mutex<Option<Owned>>,
 }
 
@@ -41,7 +44,7 @@ struct Slot {
     wanted: Option<Snapshot>,
     /// The file is not needed: everything is saved.
     clean: bool,
-    /// Files of a former run that are open now; to be removed once they are written anew.
+    /// Files of a former run that are open now; to be removed once they are written anew or not needed any more.
     adopted: Vec<Found>,
     error: Option<String>,
     end: bool,
@@ -107,9 +110,14 @@ impl Recovery {
         });
     }
 
-    /// Removes the file of a former run as soon as its document is in the file of this one.
+    /// Removes the file of a former run as soon as its document is in the file of this one, or not needed any more.
     pub fn adopt(&self, found: Found) {
-        self.change(|slot| slot.adopted.push(found));
+        self.change(|slot| {
+            slot.adopted.push(found);
+            // Both are about the document before; its own comes next.
+            slot.wanted = None;
+            slot.clean = false;
+        });
     }
 
     /// What went wrong at the last attempt to write; each failure is told once.
@@ -119,16 +127,29 @@ impl Recovery {
 
     /// Writes a document now and waits for it: for when the program is about to end badly.
     pub fn write_now(&self, snapshot: &Snapshot) -> Result<(), String> {
-        let Some(shared) = &self.shared else { return Ok(()) };
-        lock(&shared.slot).wanted = None;
-        shared.write(snapshot)
+        let Some(shared) = &self.shared else {
+            return Err("there is no folder for a recovery file; save the document yourself".into());
+        };
+        let mut file = lock(&shared.file);
+        let mut slot = lock(&shared.slot);
+        slot.wanted = None;
+        slot.clean = false;
+        let adopted = std::mem::take(&mut slot.adopted);
+        drop(slot);
+        let result = shared.write(&mut file, snapshot);
+        shared.written(snapshot, adopted, result.is_ok());
+        result
     }
 
     /// The program ends well: nothing stays. Waits for a file that is just being written.
     pub fn finish(&mut self) {
         if let Some(shared) = self.shared.take() {
+            // Under the lock of the file the writer sees the end before it would make a new one.
+            let mut file = lock(&shared.file);
             shared.end();
-            shared.remove();
+            remove_owned(&mut file);
+            let adopted = std::mem::take(&mut lock(&shared.slot).adopted);
+            adopted.into_iter().for_each(Found::discard);
         }
     }
 
@@ -149,31 +170,42 @@ impl Drop for Recovery {
 }
 
 fn write_until_the_end(shared: &Shared) {
-    let mut written: Option<Instant> = None;
+    let mut earliest = Instant::now();
+    let mut told: Option<String> = None;
     loop {
         let idle = |slot: &mut Slot| !slot.end && slot.wanted.is_none() && !slot.clean;
         let slot = shared.changed.wait_while(lock(&shared.slot), idle).unwrap_or_else(PoisonError::into_inner);
-        let rest = written.map_or(Duration::ZERO, |time| PAUSE.saturating_sub(time.elapsed()));
+        let rest = earliest.saturating_duration_since(Instant::now());
         let pause = if slot.clean { Duration::ZERO } else { rest.max(DELAY) };
         let going_on = |slot: &mut Slot| !slot.end && !slot.clean;
         let waited = shared.changed.wait_timeout_while(slot, pause, going_on);
-        let (mut slot, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+
+        let mut file = lock(&shared.file);
+        let mut slot = lock(&shared.slot);
         if slot.end {
             return;
         }
         let (wanted, clean) = (slot.wanted.take(), std::mem::take(&mut slot.clean));
-        drop(slot);
         if clean {
-            shared.remove();
+            let adopted = std::mem::take(&mut slot.adopted);
+            drop(slot);
+            remove_owned(&mut file);
+            adopted.into_iter().for_each(Found::discard);
+            continue;
         }
         let Some(snapshot) = wanted else { continue };
-        let result = shared.write(&snapshot);
-        written = Some(Instant::now());
-        let mut slot = lock(&shared.slot);
-        match result {
-            Ok(()) => std::mem::take(&mut slot.adopted).into_iter().for_each(Found::discard),
-            Err(reason) => slot.error = Some(reason),
+        let adopted = std::mem::take(&mut slot.adopted);
+        drop(slot);
+        let result = shared.write(&mut file, &snapshot);
+        earliest = Instant::now() + if result.is_ok() { PAUSE } else { RETRY };
+        shared.written(&snapshot, adopted, result.is_ok());
+        // The same failure of each further attempt is no news.
+        let fault = result.err();
+        if fault.is_some() && fault != told {
+            lock(&shared.slot).error.clone_from(&fault);
         }
+        told = fault;
     }
 }
 
@@ -183,21 +215,35 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    fn write(&self, snapshot: &Snapshot) -> Result<(), String> {
-        let mut file = lock(&self.file);
-        if file.is_none() {
-            *file = Some(Owned::new(&self.folder)?);
-        }
-        let Some(Owned { path, .. }) = &*file else { return Ok(()) };
+    fn write(&self, file: &mut Option<Owned>, snapshot: &Snapshot) -> Result<(), String> {
+        let owned = match file.take() {
+            Some(owned) => owned,
+            None => Owned::new(&self.folder)?,
+        };
+        let path = &file.insert(owned).path;
         write_atomic(path, text(snapshot, SystemTime::now()).as_bytes()).map_err(|e| {
             format!("the recovery file cannot be written: {e}; save the document yourself until that is mended")
         })
     }
 
-    fn remove(&self) {
-        if let Some(Owned { path, lock_path, .. }) = lock(&self.file).take() {
-            remove(&path, &lock_path);
+    /// After an attempt to write: what was `adopted` is safe now, or both wait for the next attempt.
+    fn written(&self, snapshot: &Snapshot, adopted: Vec<Found>, well: bool) {
+        if well {
+            return adopted.into_iter().for_each(Found::discard);
         }
+        let mut slot = lock(&self.slot);
+        slot.adopted.extend(adopted);
+        if slot.wanted.is_none() && !slot.clean {
+            slot.wanted = Some(snapshot.clone());
+        }
+        drop(slot);
+        self.changed.notify_all();
+    }
+}
+
+fn remove_owned(file: &mut Option<Owned>) {
+    if let Some(Owned { path, lock_path, .. }) = file.take() {
+        remove(&path, &lock_path);
     }
 }
 
@@ -430,6 +476,47 @@ mod tests {
         while old.exists() || folder.names().len() != 2 {
             std::thread::sleep(Duration::from_millis(5));
         }
+    }
+
+    #[test]
+    fn an_adopted_file_goes_when_its_document_is_saved_or_discarded_at_once() {
+        let folder = Scratch::new("settled");
+        let leave_one = || {
+            let before = Recovery::new(folder.0.clone());
+            before.write_now(&snapshot("gallery:workbench", None)).unwrap();
+            kill(before);
+            scan(&folder.0, false).found.remove(0)
+        };
+        let mut recovery = Recovery::new(folder.0.clone());
+        recovery.adopt(leave_one());
+        recovery.keep(snapshot("gallery:workbench", None));
+        recovery.forget();
+        while !folder.names().is_empty() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        recovery.adopt(leave_one());
+        recovery.keep(snapshot("gallery:workbench", None));
+        recovery.finish();
+        assert!(folder.names().is_empty(), "{:?}", folder.names());
+    }
+
+    #[test]
+    fn a_document_that_could_not_be_written_waits_for_the_next_attempt() {
+        let folder = Scratch::new("again");
+        // A file stands where the folder should be.
+        fs::write(&folder.0, "").unwrap();
+        let recovery = Recovery::new(folder.0.clone());
+        let kept = snapshot("gallery:workbench", None);
+        assert!(recovery.write_now(&kept).is_err());
+        fs::remove_file(&folder.0).unwrap();
+        while scan(&folder.0, false).in_use == 0 {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn where_nothing_can_be_kept_it_says_so() {
+        assert!(Recovery::default().write_now(&snapshot("gallery:workbench", None)).is_err());
     }
 
     #[test]

@@ -317,6 +317,9 @@ impl Files {
             let aside = aside.display();
             self.outbox.push(Request::Error(format!("a damaged recovery file was set aside as {aside}")));
         }
+        for fault in scan.unreadable {
+            self.outbox.push(Request::Error(format!("a recovery file was left as it is: {fault}")));
+        }
         self.offered = scan.found;
         if std::mem::take(&mut self.recovers) && !self.offered.is_empty() {
             let newest = self.offered.remove(0);

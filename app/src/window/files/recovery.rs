@@ -14,6 +14,8 @@ use serde_json::{Map, Value};
 
 /// Value of the field `format`.
 const FORMAT: &str = "burnish-recovery";
+/// Largest file that is read: a document that is indented once more and names its files by absolute paths.
+const MAX_FILE_BYTES: u64 = 2 * MAX_BYTES + (1 << 16);
 /// Edits are collected this long: a drag is many of them.
 const DELAY: Duration = Duration::from_secs(1);
 /// The file is written at most this often.
@@ -302,6 +304,8 @@ pub struct Scan {
     pub found: Vec<Found>,
     /// Files that are none of ours or damaged; they were renamed.
     pub damaged: Vec<PathBuf>,
+    /// Why files could not be read; they stay as they are.
+    pub unreadable: Vec<String>,
     /// Files of programs that still run.
     pub in_use: usize,
 }
@@ -329,21 +333,23 @@ fn scan_once(folder: &Path) -> Scan {
         match lock.try_lock() {
             Err(TryLockError::WouldBlock) => scan.in_use += 1,
             // A disk without locks: better offered twice than never.
-            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_BYTES).ok().map(|b| parse(&b, &path))
-            {
-                Some(Some((snapshot, time))) => {
-                    let title = snapshot.title();
-                    scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });
-                }
-                Some(None) => {
-                    let aside = path.with_extension("damaged");
-                    if fs::rename(&path, &aside).is_ok() {
-                        remove(&path, &lock_path);
-                        scan.damaged.push(aside);
+            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_FILE_BYTES) {
+                Ok(bytes) => match parse(&bytes, &path) {
+                    Some((snapshot, time)) => {
+                        let title = snapshot.title();
+                        scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });
                     }
-                }
+                    None => {
+                        let aside = path.with_extension("damaged");
+                        if fs::rename(&path, &aside).is_ok() {
+                            remove(&path, &lock_path);
+                            scan.damaged.push(aside);
+                        }
+                    }
+                },
                 // Removed by its owner in between.
-                None => remove(&path, &lock_path),
+                Err(_) if matches!(path.try_exists(), Ok(false)) => remove(&path, &lock_path),
+                Err(error) => scan.unreadable.push(error.to_string()),
             },
         }
     }
@@ -527,5 +533,17 @@ mod tests {
         let found = scan(&folder.0, false);
         assert_eq!((found.found.len(), found.damaged.len()), (0, 1));
         assert_eq!(folder.names(), ["a.damaged"]);
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_stays_and_is_told_about() {
+        let folder = Scratch::new("unreadable");
+        fs::create_dir_all(&folder.0).unwrap();
+        let path = folder.0.join("a.json");
+        File::create(&path).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
+        let found = scan(&folder.0, false);
+        assert_eq!((found.found.len(), found.damaged.len(), found.unreadable.len()), (0, 0, 1));
+        assert!(found.unreadable[0].contains("a.json"), "{:?}", found.unreadable);
+        assert!(path.exists());
     }
 }

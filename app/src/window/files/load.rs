@@ -220,22 +220,28 @@ pub fn changed(kind: MissingKind, path: String) -> Load {
 pub fn relinked(missing: Missing, path: &Path, others: Vec<Missing>) -> Load {
     let known = known_path(path);
     Load::new(format!("Loading {}", name_of(&known)), false, move || {
+        let mut seen = stamps([known.clone()]);
         let mut found = vec![(missing.path.clone(), known.clone(), Read::file(missing.kind, &known)?)];
         let folder = Path::new(&known).parent().unwrap_or(Path::new(""));
         for other in others.iter().filter(|other| **other != missing) {
             let beside = Path::new(&other.path).file_name().map(|name| folder.join(name));
             let beside = beside.filter(|file| file.is_file()).map(|file| file.to_string_lossy().into_owned());
-            if let Some((read, beside)) = beside.and_then(|file| Some((Read::file(other.kind, &file).ok()?, file))) {
+            let Some(beside) = beside else { continue };
+            let stamp = stamps([beside.clone()]);
+            if let Ok(read) = Read::file(other.kind, &beside) {
+                seen.extend(stamp);
                 found.push((other.path.clone(), beside, read));
             }
         }
-        Ok(Box::new(move |landing| land_relinked(landing, found)))
+        Ok(Box::new(move |landing| {
+            landing.watch.add(seen);
+            land_relinked(landing, found);
+        }))
     })
 }
 
 /// `found` holds old path, new path and content.
 fn land_relinked(landing: &mut Landing<'_>, found: Vec<(String, String, Read)>) {
-    landing.watch.add(stamps(found.iter().map(|(_, new, _)| new.clone())));
     landing.session.edit_sources(|sources| found.iter().for_each(|(_, new, read)| read.insert(new, sources)));
     landing.session.seal();
     let target = found.first().map(|(_, new, _)| name_of(new)).unwrap_or_default();

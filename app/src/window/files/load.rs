@@ -72,9 +72,15 @@ impl Loads {
         self.running.is_some() || !self.queue.is_empty()
     }
 
-    /// A document is being read: nothing may be edited.
+    /// A document is being read or waits for it: nothing may be edited.
     pub fn is_exclusive(&self) -> bool {
-        self.running.as_ref().is_some_and(|(_, exclusive)| *exclusive)
+        self.exclusive_label().is_some()
+    }
+
+    /// The document that is being read, or the first that waits.
+    pub fn exclusive_label(&self) -> Option<&str> {
+        let running = self.running.as_ref().filter(|(_, exclusive)| *exclusive).map(|(job, _)| job.label.as_str());
+        running.or_else(|| self.queue.iter().find(|load| load.exclusive).map(|load| load.label.as_str()))
     }
 
     /// What is being read.
@@ -85,6 +91,14 @@ impl Loads {
     /// Forgets the running file; what was read so far changes nothing.
     pub fn cancel(&mut self) {
         self.running = None;
+    }
+
+    /// Forgets the document of [`Loads::exclusive_label`] and those that wait; what is open stays.
+    pub fn cancel_exclusive(&mut self) {
+        if self.running.as_ref().is_some_and(|(_, exclusive)| *exclusive) {
+            self.running = None;
+        }
+        self.queue.retain(|load| !load.exclusive);
     }
 
     /// Takes over what was read and starts what waits.

@@ -413,11 +413,10 @@ impl Files {
 
     /// Shows what is being done, with the means to end it.
     fn work_ui(&mut self, ctx: &egui::Context) {
-        if self.loads.is_exclusive() {
-            let label = self.loads.label().unwrap_or_default().to_string();
-            if notices::loading_ui(ctx, &label) {
-                self.loads.cancel();
-            }
+        if let Some(label) = self.loads.exclusive_label().map(str::to_string)
+            && notices::loading_ui(ctx, &label)
+        {
+            self.loads.cancel_exclusive();
         }
         let reading = self.loads.label().filter(|_| !self.loads.is_exclusive()).map(|label| (label.to_string(), None));
         let drawing = self.picture.as_ref().map(|job| (job.label.clone(), Some(job.progress())));

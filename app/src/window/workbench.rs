@@ -204,6 +204,10 @@ impl Workbench {
             }
         });
         files.frame(ui, &mut context);
+        if files.take_opened() {
+            self.start = None;
+            ui.ctx().request_repaint();
+        }
         self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());

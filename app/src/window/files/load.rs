@@ -24,6 +24,8 @@ pub struct Landing<'a> {
     pub watch: &'a mut Watch,
     pub outbox: &'a mut Requests,
     pub recovery: &'a Recovery,
+    /// Set when another document is open.
+    pub opened: &'a mut bool,
     /// Title and lines of the last notices of an importer.
     pub notices: &'a mut Notices,
 }
@@ -152,6 +154,7 @@ pub fn scene(scene: String) -> Load {
         Ok(Box::new(move |landing| {
             landing.note(&known, &opened.notices);
             landing.session.replace(opened, path);
+            *landing.opened = true;
             landing.watch.start(seen);
             landing.preferences.remember(&known);
         }))
@@ -167,6 +170,7 @@ pub fn recovered(found: Found) -> Load {
         Ok(Box::new(move |landing| {
             landing.session.replace(opened, path);
             landing.session.set_unsaved();
+            *landing.opened = true;
             landing.watch.start(seen);
             landing.recovery.adopt(found);
             landing.outbox.push(Request::Notice("Recovered the unsaved edits; save them to keep them".into()));

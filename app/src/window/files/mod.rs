@@ -63,6 +63,8 @@ pub struct Files {
     /// Revision of the session that was handed to the recovery file.
     kept_revision: Option<u64>,
     title: String,
+    /// Another document was opened since somebody asked.
+    opened: bool,
     quitting: bool,
     /// Wishes of other threads for the next frame.
     outbox: Requests,
@@ -112,6 +114,11 @@ impl Files {
     /// A file is being read or written.
     pub fn is_busy(&self) -> bool {
         self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
+    }
+
+    /// Another document was opened since the last call.
+    pub fn take_opened(&mut self) -> bool {
+        std::mem::take(&mut self.opened)
     }
 
     /// The window was told to close, with nothing left to ask.
@@ -272,9 +279,9 @@ impl Files {
 
     /// Takes over what other threads finished.
     fn advance(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        let Files { loads, watch, outbox, notices, recovery, .. } = self;
+        let Files { loads, watch, outbox, notices, recovery, opened, .. } = self;
         let (session, preferences) = (&mut *context.session, &mut *context.preferences);
-        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, notices }, ctx);
+        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, opened, notices }, ctx);
         if let Some(result) = self.saving.as_mut().and_then(|saving| saving.advance(context.session)) {
             self.saving = None;
             match result {

@@ -309,6 +309,7 @@ fn what_a_crash_left_is_offered_and_comes_back() {
     until(&mut window, |workbench| !workbench.is_busy() && workbench.session().title() == "leaf");
     assert_eq!(*session(&window).document(), edited);
     assert!(session(&window).is_dirty());
+    assert!(window.query_by_label("Default workbench").is_none(), "the start page is gone");
 }
 
 #[test]

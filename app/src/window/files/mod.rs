@@ -62,6 +62,8 @@ pub struct Files {
     put_away: Vec<String>,
     /// Revision of the session that was handed to the recovery file.
     kept_revision: Option<u64>,
+    /// The last wish for a recovery file was fulfilled.
+    recovery_kept: bool,
     title: String,
     /// Another document was opened since somebody asked.
     opened: bool,
@@ -114,6 +116,11 @@ impl Files {
     /// A file is being read or written.
     pub fn is_busy(&self) -> bool {
         self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
+    }
+
+    /// The last [`Request::WriteRecovery`] put the document on the disk.
+    pub fn recovery_kept(&self) -> bool {
+        self.recovery_kept
     }
 
     /// Another document was opened since the last call.
@@ -195,6 +202,7 @@ impl Files {
             }
             Request::WriteRecovery => {
                 let fault = self.keep_now(session).err();
+                self.recovery_kept = fault.is_none();
                 self.outbox.extend(fault.map(Request::Error));
             }
             // Not about files of the document.

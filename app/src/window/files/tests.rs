@@ -296,6 +296,7 @@ fn what_a_crash_left_is_offered_and_comes_back() {
         let workbench = crashed.state_mut().as_mut().unwrap();
         workbench.ask(Request::WriteRecovery);
         crashed.run_steps(2);
+        assert!(crashed.state().as_ref().unwrap().recovery_kept());
         document
     };
     let mut window = window(&folder, None);

@@ -9,7 +9,7 @@ use eframe::egui::{self, Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::window::{Options, Request, Session, Stage, Workbench};
+use crate::window::{Command, Options, Request, Session, Stage, Workbench};
 
 /// A triangle with a red material; `NAME` is replaced.
 const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":"leaf"}],
@@ -189,6 +189,46 @@ fn unsaved_changes_are_asked_about() {
     until(&mut window, Workbench::is_ending);
     assert!(folder.0.join("leaf.burnish").is_file());
     assert_eq!(std::fs::read_dir(folder.0.join("user/recovery")).map_or(0, Iterator::count), 0);
+}
+
+/// A window with a saved document that has an edit, and the path of the document.
+fn window_to_save(folder: &Scratch) -> (Window, PathBuf) {
+    let model = folder.model("leaf.gltf", "red");
+    let saved = folder.0.join("leaf.burnish");
+    burnish_core::document::open(&model.to_string_lossy()).unwrap().document.save(&saved).unwrap();
+    let mut window = window(folder, Some(&saved));
+    edit(&mut window);
+    (window, saved)
+}
+
+#[test]
+fn a_save_lands_before_the_next_document_does() {
+    let folder = Scratch::new("save-open");
+    let other = folder.model("other.gltf", "blue");
+    let (mut window, saved) = window_to_save(&folder);
+    let edited = session(&window).document().clone();
+    let workbench = window.state_mut().as_mut().unwrap();
+    workbench.ask(Request::Command(Command::Save));
+    workbench.ask(Request::OpenScene(other.to_string_lossy().into_owned()));
+    until(&mut window, |workbench| !workbench.is_busy() && workbench.session().title() == "other");
+    assert_eq!(Document::read(&saved).unwrap(), *edited);
+    assert_eq!(session(&window).path, None, "the other document was never saved");
+    assert!(!session(&window).is_dirty());
+}
+
+#[test]
+fn quitting_waits_for_all_saves() {
+    let folder = Scratch::new("save-quit");
+    let (mut window, saved) = window_to_save(&folder);
+    let workbench = window.state_mut().as_mut().unwrap();
+    for command in [Command::Save, Command::Save, Command::Quit] {
+        workbench.ask(Request::Command(command));
+    }
+    // The first save has begun; the second takes this edit along.
+    window.step();
+    edit(&mut window);
+    until(&mut window, Workbench::is_ending);
+    assert_eq!(Document::read(&saved).unwrap(), **session(&window).document());
 }
 
 #[test]

@@ -71,6 +71,11 @@ impl<T: Send + 'static> Job<T> {
             Err(TryRecvError::Disconnected) => Outcome::Failed,
         }
     }
+
+    /// Waits for the end; never [`Outcome::Running`].
+    pub fn wait(&mut self) -> Outcome<T> {
+        self.result.recv().map_or(Outcome::Failed, Outcome::Done)
+    }
 }
 
 impl<T> Job<T> {
@@ -125,6 +130,13 @@ mod tests {
         assert_eq!(wait(&mut job, woken), Outcome::Done(7));
         assert_eq!(job.progress(), 0.5);
         assert_eq!(job.poll(), Outcome::Failed);
+    }
+
+    #[test]
+    fn one_can_wait_for_the_result() {
+        let mut job = Job::spawn("work", || {}, |_| 7);
+        assert_eq!(job.wait(), Outcome::Done(7));
+        assert_eq!(job.wait(), Outcome::Failed);
     }
 
     #[test]

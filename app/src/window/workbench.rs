@@ -107,6 +107,11 @@ impl Workbench {
         self.files.is_ending()
     }
 
+    /// The last [`Request::WriteRecovery`] put the document on the disk; false before the first.
+    pub fn recovery_kept(&self) -> bool {
+        self.files.recovery_kept()
+    }
+
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
         self.files.is_busy() || self.thumbnails.is_drawing()
@@ -204,6 +209,10 @@ impl Workbench {
             }
         });
         files.frame(ui, &mut context);
+        if files.take_opened() {
+            self.start = None;
+            ui.ctx().request_repaint();
+        }
         self.above_ui(ui.ctx());
         for request in std::mem::take(&mut self.requests) {
             self.fulfil(request, ui.ctx());

@@ -24,6 +24,8 @@ pub struct Landing<'a> {
     pub watch: &'a mut Watch,
     pub outbox: &'a mut Requests,
     pub recovery: &'a Recovery,
+    /// Set when another document is open.
+    pub opened: &'a mut bool,
     /// Title and lines of the last notices of an importer.
     pub notices: &'a mut Notices,
 }
@@ -72,9 +74,15 @@ impl Loads {
         self.running.is_some() || !self.queue.is_empty()
     }
 
-    /// A document is being read: nothing may be edited.
+    /// A document is being read or waits for it: nothing may be edited.
     pub fn is_exclusive(&self) -> bool {
-        self.running.as_ref().is_some_and(|(_, exclusive)| *exclusive)
+        self.exclusive_label().is_some()
+    }
+
+    /// The document that is being read, or the first that waits.
+    pub fn exclusive_label(&self) -> Option<&str> {
+        let running = self.running.as_ref().filter(|(_, exclusive)| *exclusive).map(|(job, _)| job.label.as_str());
+        running.or_else(|| self.queue.iter().find(|load| load.exclusive).map(|load| load.label.as_str()))
     }
 
     /// What is being read.
@@ -85,6 +93,14 @@ impl Loads {
     /// Forgets the running file; what was read so far changes nothing.
     pub fn cancel(&mut self) {
         self.running = None;
+    }
+
+    /// Forgets the document of [`Loads::exclusive_label`] and those that wait; what is open stays.
+    pub fn cancel_exclusive(&mut self) {
+        if self.running.as_ref().is_some_and(|(_, exclusive)| *exclusive) {
+            self.running = None;
+        }
+        self.queue.retain(|load| !load.exclusive);
     }
 
     /// Takes over what was read and starts what waits.
@@ -138,6 +154,7 @@ pub fn scene(scene: String) -> Load {
         Ok(Box::new(move |landing| {
             landing.note(&known, &opened.notices);
             landing.session.replace(opened, path);
+            *landing.opened = true;
             landing.watch.start(seen);
             landing.preferences.remember(&known);
         }))
@@ -153,6 +170,7 @@ pub fn recovered(found: Found) -> Load {
         Ok(Box::new(move |landing| {
             landing.session.replace(opened, path);
             landing.session.set_unsaved();
+            *landing.opened = true;
             landing.watch.start(seen);
             landing.recovery.adopt(found);
             landing.outbox.push(Request::Notice("Recovered the unsaved edits; save them to keep them".into()));
@@ -220,22 +238,28 @@ pub fn changed(kind: MissingKind, path: String) -> Load {
 pub fn relinked(missing: Missing, path: &Path, others: Vec<Missing>) -> Load {
     let known = known_path(path);
     Load::new(format!("Loading {}", name_of(&known)), false, move || {
+        let mut seen = stamps([known.clone()]);
         let mut found = vec![(missing.path.clone(), known.clone(), Read::file(missing.kind, &known)?)];
         let folder = Path::new(&known).parent().unwrap_or(Path::new(""));
         for other in others.iter().filter(|other| **other != missing) {
             let beside = Path::new(&other.path).file_name().map(|name| folder.join(name));
             let beside = beside.filter(|file| file.is_file()).map(|file| file.to_string_lossy().into_owned());
-            if let Some((read, beside)) = beside.and_then(|file| Some((Read::file(other.kind, &file).ok()?, file))) {
+            let Some(beside) = beside else { continue };
+            let stamp = stamps([beside.clone()]);
+            if let Ok(read) = Read::file(other.kind, &beside) {
+                seen.extend(stamp);
                 found.push((other.path.clone(), beside, read));
             }
         }
-        Ok(Box::new(move |landing| land_relinked(landing, found)))
+        Ok(Box::new(move |landing| {
+            landing.watch.add(seen);
+            land_relinked(landing, found);
+        }))
     })
 }
 
 /// `found` holds old path, new path and content.
 fn land_relinked(landing: &mut Landing<'_>, found: Vec<(String, String, Read)>) {
-    landing.watch.add(stamps(found.iter().map(|(_, new, _)| new.clone())));
     landing.session.edit_sources(|sources| found.iter().for_each(|(_, new, read)| read.insert(new, sources)));
     landing.session.seal();
     let target = found.first().map(|(_, new, _)| name_of(new)).unwrap_or_default();

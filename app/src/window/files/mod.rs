@@ -32,7 +32,7 @@ use drop::Pending;
 use image::ImageSettings;
 use load::{Landing, Loads, Notices};
 use recovery::{Found, Recovery, Scan, Snapshot};
-use save::{Choice, Next, Saving};
+use save::{Choice, Next, Saving, Wish};
 use store::Store;
 use watch::Watch;
 
@@ -45,7 +45,12 @@ pub struct Files {
     folders: Option<Folders>,
     store: Option<Store>,
     loads: Loads,
+    /// One at a time: two would write the same file.
     saving: Option<Saving>,
+    /// The save after the running one.
+    wish: Option<Wish>,
+    /// What waits for the end of the saves.
+    held: Option<Next>,
     dialog: Option<Dialog>,
     guard: Option<Next>,
     picture: Option<Job<Result<String, String>>>,
@@ -62,7 +67,11 @@ pub struct Files {
     put_away: Vec<String>,
     /// Revision of the session that was handed to the recovery file.
     kept_revision: Option<u64>,
+    /// The last wish for a recovery file was fulfilled.
+    recovery_kept: bool,
     title: String,
+    /// Another document was opened since somebody asked.
+    opened: bool,
     quitting: bool,
     /// Wishes of other threads for the next frame.
     outbox: Requests,
@@ -112,6 +121,16 @@ impl Files {
     /// A file is being read or written.
     pub fn is_busy(&self) -> bool {
         self.loads.is_busy() || self.saving.is_some() || self.picture.is_some() || self.scanning.is_some()
+    }
+
+    /// The last [`Request::WriteRecovery`] put the document on the disk.
+    pub fn recovery_kept(&self) -> bool {
+        self.recovery_kept
+    }
+
+    /// Another document was opened since the last call.
+    pub fn take_opened(&mut self) -> bool {
+        std::mem::take(&mut self.opened)
     }
 
     /// The window was told to close, with nothing left to ask.
@@ -188,6 +207,7 @@ impl Files {
             }
             Request::WriteRecovery => {
                 let fault = self.keep_now(session).err();
+                self.recovery_kept = fault.is_none();
                 self.outbox.extend(fault.map(Request::Error));
             }
             // Not about files of the document.
@@ -205,7 +225,7 @@ impl Files {
         match command {
             Command::Open => self.open_dialog(Ask::Scene, session),
             Command::LoadEnvironment => self.open_dialog(Ask::Environment, session),
-            Command::Save => self.save(session, None, ctx),
+            Command::Save => self.save(session, Wish::default(), ctx),
             Command::SaveAs => self.open_dialog(Ask::SaveAs(None), session),
             Command::SaveImage => {
                 let size = stage.status().map(|status| status.size);
@@ -230,7 +250,7 @@ impl Files {
 
     /// Leaves the document for something else, after a question where it has unsaved changes.
     fn leave(&mut self, next: Next, session: &Session, ctx: &egui::Context) {
-        if session.is_dirty() {
+        if session.is_dirty() && self.saving.is_none() {
             self.guard = Some(next);
         } else {
             self.go_on(next, ctx);
@@ -238,6 +258,11 @@ impl Files {
     }
 
     fn go_on(&mut self, next: Next, ctx: &egui::Context) {
+        if self.saving.is_some() {
+            // Whether something is unsaved is known when it is over.
+            self.held = Some(next);
+            return;
+        }
         match next {
             Next::Open(scene) => self.loads.push(load::scene(scene)),
             Next::Quit => {
@@ -249,9 +274,14 @@ impl Files {
         ctx.request_repaint();
     }
 
-    /// Saves under the known path, or asks for one.
-    fn save(&mut self, session: &Session, next: Option<Next>, ctx: &egui::Context) {
-        match &session.path {
+    /// Saves under the path of the wish or the known one, or asks for one; after the running save.
+    fn save(&mut self, session: &Session, wish: Wish, ctx: &egui::Context) {
+        if self.saving.is_some() {
+            self.wish = Some(wish.or(self.wish.take().unwrap_or_default()));
+            return;
+        }
+        let Wish { path, next } = wish;
+        match path.as_ref().or(session.path.as_ref()) {
             Some(path) => self.saving = Some(Saving::start(session, path, next, ctx)),
             None => self.open_dialog(Ask::SaveAs(next), session),
         }
@@ -264,30 +294,16 @@ impl Files {
         }
         if session.is_dirty() || self.saving.is_some() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.guard = Some(Next::Quit);
-        } else {
-            self.go_on(Next::Quit, ctx);
         }
+        self.leave(Next::Quit, session, ctx);
     }
 
     /// Takes over what other threads finished.
     fn advance(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        let Files { loads, watch, outbox, notices, recovery, .. } = self;
-        let (session, preferences) = (&mut *context.session, &mut *context.preferences);
-        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, notices }, ctx);
-        if let Some(result) = self.saving.as_mut().and_then(|saving| saving.advance(context.session)) {
-            self.saving = None;
-            match result {
-                Ok((path, next)) => {
-                    self.outbox.push(Request::Notice(format!("Saved {}", path.display())));
-                    context.preferences.remember(&load::known_path(&path));
-                    self.kept_revision = None;
-                    if let Some(next) = next {
-                        self.leave(next, context.session, ctx);
-                    }
-                }
-                Err(reason) => self.outbox.push(Request::Error(reason)),
-            }
+        // Before another document may take the place of the one that is saved.
+        self.advance_save(context, ctx);
+        if self.saving.is_none() || !self.loads.is_exclusive() {
+            self.advance_loads(context, ctx);
         }
         self.advance_picture();
         if let Some(job) = &mut self.scanning
@@ -297,6 +313,36 @@ impl Files {
             self.scanned(scan);
         }
         self.watch.wake(ctx);
+    }
+
+    fn advance_loads(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
+        let Files { loads, watch, outbox, notices, recovery, opened, .. } = self;
+        let (session, preferences) = (&mut *context.session, &mut *context.preferences);
+        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, opened, notices }, ctx);
+    }
+
+    fn advance_save(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
+        let Some(result) = self.saving.as_mut().and_then(|saving| saving.advance(context.session)) else { return };
+        self.saving = None;
+        let after = match result {
+            Ok((path, next)) => {
+                self.outbox.push(Request::Notice(format!("Saved {}", path.display())));
+                context.preferences.remember(&load::known_path(&path));
+                self.kept_revision = None;
+                next
+            }
+            Err(reason) => {
+                self.outbox.push(Request::Error(reason));
+                None
+            }
+        };
+        let held = self.held.take();
+        if let Some(Wish { path, next }) = self.wish.take() {
+            let next = held.or(next).or(after);
+            self.save(context.session, Wish { path, next }, ctx);
+        } else if let Some(next) = held.or(after) {
+            self.leave(next, context.session, ctx);
+        }
     }
 
     fn advance_picture(&mut self) {
@@ -316,6 +362,9 @@ impl Files {
         for aside in scan.damaged {
             let aside = aside.display();
             self.outbox.push(Request::Error(format!("a damaged recovery file was set aside as {aside}")));
+        }
+        for fault in scan.unreadable {
+            self.outbox.push(Request::Error(format!("a recovery file was left as it is: {fault}")));
         }
         self.offered = scan.found;
         if std::mem::take(&mut self.recovers) && !self.offered.is_empty() {
@@ -357,7 +406,7 @@ impl Files {
         {
             self.guard = None;
             match choice {
-                Choice::Save => self.save(context.session, Some(next), ctx),
+                Choice::Save => self.save(context.session, Wish { path: None, next: Some(next) }, ctx),
                 Choice::Discard => self.go_on(next, ctx),
                 Choice::Cancel => {}
             }
@@ -400,7 +449,7 @@ impl Files {
             Ask::Texture { material, role } => self.outbox.push(Request::LoadTexture { material, role, path }),
             Ask::Preset => self.outbox.push(Request::ImportPreset(path)),
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
-            Ask::SaveAs(next) => self.saving = Some(Saving::start(context.session, &path, next, ctx)),
+            Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
             Ask::SaveImage(settings) => {
                 self.picture = Some(image::render(context.session, context.stage.passes(), settings, path, ctx));
             }
@@ -410,11 +459,10 @@ impl Files {
 
     /// Shows what is being done, with the means to end it.
     fn work_ui(&mut self, ctx: &egui::Context) {
-        if self.loads.is_exclusive() {
-            let label = self.loads.label().unwrap_or_default().to_string();
-            if notices::loading_ui(ctx, &label) {
-                self.loads.cancel();
-            }
+        if let Some(label) = self.loads.exclusive_label().map(str::to_string)
+            && notices::loading_ui(ctx, &label)
+        {
+            self.loads.cancel_exclusive();
         }
         let reading = self.loads.label().filter(|_| !self.loads.is_exclusive()).map(|label| (label.to_string(), None));
         let drawing = self.picture.as_ref().map(|job| (job.label.clone(), Some(job.progress())));

@@ -14,10 +14,14 @@ use serde_json::{Map, Value};
 
 /// Value of the field `format`.
 const FORMAT: &str = "burnish-recovery";
+/// Largest file that is read: a document that is indented once more and names its files by absolute paths.
+const MAX_FILE_BYTES: u64 = 2 * MAX_BYTES + (1 << 16);
 /// Edits are collected this long: a drag is many of them.
 const DELAY: Duration = Duration::from_secs(1);
 /// The file is written at most this often.
 const PAUSE: Duration = Duration::from_secs(3);
+/// After this time a write that failed is tried again.
+const RETRY: Duration = Duration::from_secs(10);
 /// How long `--recover` waits for the program before to end.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -31,7 +35,8 @@ struct Shared {
     folder: PathBuf,
     slot: Mutex<Slot>,
     changed: Condvar,
-    /// Held while the file is written, so that an older document never takes the place of a newer one.
+    /// Held from taking a document out of the slot until it is written, so that an older one never takes the place of
+    /// a newer one. Locked before the slot where both are.
     file: Mutex<Option<Owned>>,
 }
 
@@ -41,7 +46,7 @@ struct Slot {
     wanted: Option<Snapshot>,
     /// The file is not needed: everything is saved.
     clean: bool,
-    /// Files of a former run that are open now; to be removed once they are written anew.
+    /// Files of a former run that are open now; to be removed once they are written anew or not needed any more.
     adopted: Vec<Found>,
     error: Option<String>,
     end: bool,
@@ -107,9 +112,14 @@ impl Recovery {
         });
     }
 
-    /// Removes the file of a former run as soon as its document is in the file of this one.
+    /// Removes the file of a former run as soon as its document is in the file of this one, or not needed any more.
     pub fn adopt(&self, found: Found) {
-        self.change(|slot| slot.adopted.push(found));
+        self.change(|slot| {
+            slot.adopted.push(found);
+            // Both are about the document before; its own comes next.
+            slot.wanted = None;
+            slot.clean = false;
+        });
     }
 
     /// What went wrong at the last attempt to write; each failure is told once.
@@ -119,16 +129,29 @@ impl Recovery {
 
     /// Writes a document now and waits for it: for when the program is about to end badly.
     pub fn write_now(&self, snapshot: &Snapshot) -> Result<(), String> {
-        let Some(shared) = &self.shared else { return Ok(()) };
-        lock(&shared.slot).wanted = None;
-        shared.write(snapshot)
+        let Some(shared) = &self.shared else {
+            return Err("there is no folder for a recovery file; save the document yourself".into());
+        };
+        let mut file = lock(&shared.file);
+        let mut slot = lock(&shared.slot);
+        slot.wanted = None;
+        slot.clean = false;
+        let adopted = std::mem::take(&mut slot.adopted);
+        drop(slot);
+        let result = shared.write(&mut file, snapshot);
+        shared.written(snapshot, adopted, result.is_ok());
+        result
     }
 
     /// The program ends well: nothing stays. Waits for a file that is just being written.
     pub fn finish(&mut self) {
         if let Some(shared) = self.shared.take() {
+            // Under the lock of the file the writer sees the end before it would make a new one.
+            let mut file = lock(&shared.file);
             shared.end();
-            shared.remove();
+            remove_owned(&mut file);
+            let adopted = std::mem::take(&mut lock(&shared.slot).adopted);
+            adopted.into_iter().for_each(Found::discard);
         }
     }
 
@@ -149,31 +172,42 @@ impl Drop for Recovery {
 }
 
 fn write_until_the_end(shared: &Shared) {
-    let mut written: Option<Instant> = None;
+    let mut earliest = Instant::now();
+    let mut told: Option<String> = None;
     loop {
         let idle = |slot: &mut Slot| !slot.end && slot.wanted.is_none() && !slot.clean;
         let slot = shared.changed.wait_while(lock(&shared.slot), idle).unwrap_or_else(PoisonError::into_inner);
-        let rest = written.map_or(Duration::ZERO, |time| PAUSE.saturating_sub(time.elapsed()));
+        let rest = earliest.saturating_duration_since(Instant::now());
         let pause = if slot.clean { Duration::ZERO } else { rest.max(DELAY) };
         let going_on = |slot: &mut Slot| !slot.end && !slot.clean;
         let waited = shared.changed.wait_timeout_while(slot, pause, going_on);
-        let (mut slot, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+
+        let mut file = lock(&shared.file);
+        let mut slot = lock(&shared.slot);
         if slot.end {
             return;
         }
         let (wanted, clean) = (slot.wanted.take(), std::mem::take(&mut slot.clean));
-        drop(slot);
         if clean {
-            shared.remove();
+            let adopted = std::mem::take(&mut slot.adopted);
+            drop(slot);
+            remove_owned(&mut file);
+            adopted.into_iter().for_each(Found::discard);
+            continue;
         }
         let Some(snapshot) = wanted else { continue };
-        let result = shared.write(&snapshot);
-        written = Some(Instant::now());
-        let mut slot = lock(&shared.slot);
-        match result {
-            Ok(()) => std::mem::take(&mut slot.adopted).into_iter().for_each(Found::discard),
-            Err(reason) => slot.error = Some(reason),
+        let adopted = std::mem::take(&mut slot.adopted);
+        drop(slot);
+        let result = shared.write(&mut file, &snapshot);
+        earliest = Instant::now() + if result.is_ok() { PAUSE } else { RETRY };
+        shared.written(&snapshot, adopted, result.is_ok());
+        // The same failure of each further attempt is no news.
+        let fault = result.err();
+        if fault.is_some() && fault != told {
+            lock(&shared.slot).error.clone_from(&fault);
         }
+        told = fault;
     }
 }
 
@@ -183,21 +217,35 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    fn write(&self, snapshot: &Snapshot) -> Result<(), String> {
-        let mut file = lock(&self.file);
-        if file.is_none() {
-            *file = Some(Owned::new(&self.folder)?);
-        }
-        let Some(Owned { path, .. }) = &*file else { return Ok(()) };
+    fn write(&self, file: &mut Option<Owned>, snapshot: &Snapshot) -> Result<(), String> {
+        let owned = match file.take() {
+            Some(owned) => owned,
+            None => Owned::new(&self.folder)?,
+        };
+        let path = &file.insert(owned).path;
         write_atomic(path, text(snapshot, SystemTime::now()).as_bytes()).map_err(|e| {
             format!("the recovery file cannot be written: {e}; save the document yourself until that is mended")
         })
     }
 
-    fn remove(&self) {
-        if let Some(Owned { path, lock_path, .. }) = lock(&self.file).take() {
-            remove(&path, &lock_path);
+    /// After an attempt to write: what was `adopted` is safe now, or both wait for the next attempt.
+    fn written(&self, snapshot: &Snapshot, adopted: Vec<Found>, well: bool) {
+        if well {
+            return adopted.into_iter().for_each(Found::discard);
         }
+        let mut slot = lock(&self.slot);
+        slot.adopted.extend(adopted);
+        if slot.wanted.is_none() && !slot.clean {
+            slot.wanted = Some(snapshot.clone());
+        }
+        drop(slot);
+        self.changed.notify_all();
+    }
+}
+
+fn remove_owned(file: &mut Option<Owned>) {
+    if let Some(Owned { path, lock_path, .. }) = file.take() {
+        remove(&path, &lock_path);
     }
 }
 
@@ -256,6 +304,8 @@ pub struct Scan {
     pub found: Vec<Found>,
     /// Files that are none of ours or damaged; they were renamed.
     pub damaged: Vec<PathBuf>,
+    /// Why files could not be read; they stay as they are.
+    pub unreadable: Vec<String>,
     /// Files of programs that still run.
     pub in_use: usize,
 }
@@ -283,21 +333,23 @@ fn scan_once(folder: &Path) -> Scan {
         match lock.try_lock() {
             Err(TryLockError::WouldBlock) => scan.in_use += 1,
             // A disk without locks: better offered twice than never.
-            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_BYTES).ok().map(|b| parse(&b, &path))
-            {
-                Some(Some((snapshot, time))) => {
-                    let title = snapshot.title();
-                    scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });
-                }
-                Some(None) => {
-                    let aside = path.with_extension("damaged");
-                    if fs::rename(&path, &aside).is_ok() {
-                        remove(&path, &lock_path);
-                        scan.damaged.push(aside);
+            Ok(()) | Err(TryLockError::Error(_)) => match read_bounded(&path, MAX_FILE_BYTES) {
+                Ok(bytes) => match parse(&bytes, &path) {
+                    Some((snapshot, time)) => {
+                        let title = snapshot.title();
+                        scan.found.push(Found { path, lock_path, _lock: lock, title, time, snapshot });
                     }
-                }
+                    None => {
+                        let aside = path.with_extension("damaged");
+                        if fs::rename(&path, &aside).is_ok() {
+                            remove(&path, &lock_path);
+                            scan.damaged.push(aside);
+                        }
+                    }
+                },
                 // Removed by its owner in between.
-                None => remove(&path, &lock_path),
+                Err(_) if matches!(path.try_exists(), Ok(false)) => remove(&path, &lock_path),
+                Err(error) => scan.unreadable.push(error.to_string()),
             },
         }
     }
@@ -339,106 +391,5 @@ impl Found {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Scratch(PathBuf);
-
-    impl Scratch {
-        fn new(name: &str) -> Scratch {
-            let folder = std::env::temp_dir().join(format!("burnish-recovery-{}-{name}", std::process::id()));
-            let _ = fs::remove_dir_all(&folder);
-            Scratch(folder)
-        }
-
-        fn names(&self) -> Vec<String> {
-            let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
-            let mut names: Vec<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-            names.sort();
-            names
-        }
-    }
-
-    impl Drop for Scratch {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
-
-    fn snapshot(scene: &str, path: Option<&str>) -> Snapshot {
-        let document = Document { scene: scene.into(), ..Document::default() };
-        Snapshot { document: Arc::new(document), path: path.map(PathBuf::from) }
-    }
-
-    /// What stays when a program is killed: the file, and a lock that nobody holds.
-    fn kill(recovery: Recovery) {
-        *lock(&recovery.shared.as_ref().expect("it was not finished").file) = None;
-    }
-
-    #[test]
-    fn what_a_killed_program_leaves_comes_back_with_its_path() {
-        let folder = Scratch::new("killed");
-        let recovery = Recovery::new(folder.0.clone());
-        let kept = snapshot("/models/chair.glb", Some("/work/chair.burnish"));
-        recovery.write_now(&kept).unwrap();
-        assert_eq!(scan(&folder.0, false).in_use, 1, "a running program is not disturbed");
-        kill(recovery);
-        let mut found = scan(&folder.0, false).found;
-        assert_eq!(found.len(), 1);
-        let found = found.remove(0);
-        assert_eq!((found.title.as_str(), found.age().as_str()), ("chair", "a minute ago"));
-        assert_eq!(found.snapshot().document, kept.document);
-        assert_eq!(found.snapshot().path, kept.path);
-        assert_eq!(scan(&folder.0, false).in_use, 1, "offered in one window, not in two");
-        found.discard();
-        assert!(folder.names().is_empty(), "{:?}", folder.names());
-    }
-
-    #[test]
-    fn the_thread_writes_what_it_is_handed_and_removes_what_is_saved() {
-        let folder = Scratch::new("thread");
-        let mut recovery = Recovery::new(folder.0.clone());
-        let json = |names: &[String]| names.iter().filter(|name| name.ends_with(".json")).count();
-        let wait = |count: usize| {
-            while json(&folder.names()) != count {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-        };
-        recovery.keep(snapshot("gallery:workbench", None));
-        wait(1);
-        recovery.forget();
-        wait(0);
-        recovery.keep(snapshot("gallery:workbench", None));
-        wait(1);
-        recovery.finish();
-        assert!(folder.names().is_empty(), "{:?}", folder.names());
-    }
-
-    #[test]
-    fn an_adopted_file_goes_only_when_its_document_is_safe() {
-        let folder = Scratch::new("adopted");
-        let before = Recovery::new(folder.0.clone());
-        before.write_now(&snapshot("gallery:workbench", None)).unwrap();
-        kill(before);
-        let recovery = Recovery::new(folder.0.clone());
-        let found = scan(&folder.0, false).found.remove(0);
-        let old = found.path.clone();
-        recovery.adopt(found);
-        assert!(old.exists());
-        recovery.keep(snapshot("gallery:workbench", None));
-        // What stays is the file of this run and its lock.
-        while old.exists() || folder.names().len() != 2 {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
-
-    #[test]
-    fn a_damaged_file_is_set_aside() {
-        let folder = Scratch::new("damaged");
-        fs::create_dir_all(&folder.0).unwrap();
-        fs::write(folder.0.join("a.json"), "{\"format\": \"burnish-rec").unwrap();
-        let found = scan(&folder.0, false);
-        assert_eq!((found.found.len(), found.damaged.len()), (0, 1));
-        assert_eq!(folder.names(), ["a.damaged"]);
-    }
-}
+#[path = "recovery_tests.rs"]
+mod tests;

@@ -18,6 +18,22 @@ pub enum Next {
     Quit,
 }
 
+/// A save that is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wish {
+    /// Where to; the path of the document when absent.
+    pub path: Option<PathBuf>,
+    /// What comes after it.
+    pub next: Option<Next>,
+}
+
+impl Wish {
+    /// The newest wish, with what it leaves open from the one before.
+    pub fn or(self, before: Wish) -> Wish {
+        Wish { path: self.path.or(before.path), next: self.next.or(before.next) }
+    }
+}
+
 /// A document on its way to the disk.
 pub struct Saving {
     job: Job<Result<(), String>>,

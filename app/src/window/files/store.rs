@@ -24,10 +24,12 @@ impl Store {
     pub fn keep(&mut self, preferences: &Preferences, at_the_end: bool) -> Option<String> {
         let mut fault = None;
         if let Some(job) = &mut self.job {
-            match job.poll() {
-                Outcome::Running if !at_the_end => return None,
+            // A thread that still wrote would end with the program, or put older choices over the newest.
+            let outcome = if at_the_end { job.wait() } else { job.poll() };
+            match outcome {
+                Outcome::Running => return None,
                 Outcome::Done(Err(reason)) => fault = Some(reason),
-                Outcome::Running | Outcome::Done(Ok(())) | Outcome::Failed => {}
+                Outcome::Done(Ok(())) | Outcome::Failed => {}
             }
             self.job = None;
         }

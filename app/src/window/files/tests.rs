@@ -9,7 +9,7 @@ use eframe::egui::{self, Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::window::{Options, Request, Session, Stage, Workbench};
+use crate::window::{Command, Options, Request, Session, Stage, Workbench};
 
 /// A triangle with a red material; `NAME` is replaced.
 const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":"leaf"}],
@@ -191,6 +191,46 @@ fn unsaved_changes_are_asked_about() {
     assert_eq!(std::fs::read_dir(folder.0.join("user/recovery")).map_or(0, Iterator::count), 0);
 }
 
+/// A window with a saved document that has an edit, and the path of the document.
+fn window_to_save(folder: &Scratch) -> (Window, PathBuf) {
+    let model = folder.model("leaf.gltf", "red");
+    let saved = folder.0.join("leaf.burnish");
+    burnish_core::document::open(&model.to_string_lossy()).unwrap().document.save(&saved).unwrap();
+    let mut window = window(folder, Some(&saved));
+    edit(&mut window);
+    (window, saved)
+}
+
+#[test]
+fn a_save_lands_before_the_next_document_does() {
+    let folder = Scratch::new("save-open");
+    let other = folder.model("other.gltf", "blue");
+    let (mut window, saved) = window_to_save(&folder);
+    let edited = session(&window).document().clone();
+    let workbench = window.state_mut().as_mut().unwrap();
+    workbench.ask(Request::Command(Command::Save));
+    workbench.ask(Request::OpenScene(other.to_string_lossy().into_owned()));
+    until(&mut window, |workbench| !workbench.is_busy() && workbench.session().title() == "other");
+    assert_eq!(Document::read(&saved).unwrap(), *edited);
+    assert_eq!(session(&window).path, None, "the other document was never saved");
+    assert!(!session(&window).is_dirty());
+}
+
+#[test]
+fn quitting_waits_for_all_saves() {
+    let folder = Scratch::new("save-quit");
+    let (mut window, saved) = window_to_save(&folder);
+    let workbench = window.state_mut().as_mut().unwrap();
+    for command in [Command::Save, Command::Save, Command::Quit] {
+        workbench.ask(Request::Command(command));
+    }
+    // The first save has begun; the second takes this edit along.
+    window.step();
+    edit(&mut window);
+    until(&mut window, Workbench::is_ending);
+    assert_eq!(Document::read(&saved).unwrap(), **session(&window).document());
+}
+
 #[test]
 fn discarding_goes_on() {
     let folder = Scratch::new("discard");
@@ -296,6 +336,7 @@ fn what_a_crash_left_is_offered_and_comes_back() {
         let workbench = crashed.state_mut().as_mut().unwrap();
         workbench.ask(Request::WriteRecovery);
         crashed.run_steps(2);
+        assert!(crashed.state().as_ref().unwrap().recovery_kept());
         document
     };
     let mut window = window(&folder, None);
@@ -309,6 +350,7 @@ fn what_a_crash_left_is_offered_and_comes_back() {
     until(&mut window, |workbench| !workbench.is_busy() && workbench.session().title() == "leaf");
     assert_eq!(*session(&window).document(), edited);
     assert!(session(&window).is_dirty());
+    assert!(window.query_by_label("Default workbench").is_none(), "the start page is gone");
 }
 
 #[test]

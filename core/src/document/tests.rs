@@ -58,6 +58,34 @@ fn what_is_no_document_is_refused_with_the_field_and_what_to_do() {
 }
 
 #[test]
+fn numbers_that_no_file_can_hold_are_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    let path = folder.join("a.burnish");
+    let document = workbench().document;
+    document.save(&path).unwrap();
+    let refused = |change: fn(&mut Document)| {
+        let mut changed = document.clone();
+        let camera = changed.view.camera.clone();
+        changed.save_camera("Camera", &camera);
+        change(&mut changed);
+        changed.save(&path).unwrap_err().to_string()
+    };
+    for (fault, field) in [
+        (refused(|d| d.view.camera.target[1] = f64::INFINITY), "view.camera.target"),
+        (refused(|d| d.view.camera.distance = 0.0), "view.camera.distance"),
+        (refused(|d| d.view.camera.yfov_deg = 171.0), "view.camera.yfov_deg"),
+        (refused(|d| d.view.exposure_ev = f64::NAN), "view.exposure_ev"),
+        (refused(|d| d.cameras.iter_mut().for_each(|c| c.roll_deg = f64::NAN)), "cameras[0].roll_deg"),
+    ] {
+        assert!(
+            fault.contains("a.burnish") && fault.contains(field) && fault.contains("nothing was written"),
+            "{fault}"
+        );
+    }
+    assert_eq!(Document::read(&path).unwrap(), document);
+}
+
+#[test]
 fn a_new_document_resolves_to_its_model() {
     let opened = workbench();
     let model = opened.sources.models[DEFAULT_SCENE].clone();

@@ -13,6 +13,8 @@ use crate::window::widget::{Change, param_ui};
 /// Vertical angle of a new view, degrees, and its focal length: 12 mm / tan(17.5 deg).
 const YFOV_DEG: f64 = 35.0;
 const FOCAL_MM: f64 = 38.059;
+/// Largest coordinate of the target that can be typed, meters: a field without bounds takes `inf`.
+const FARTHEST_M: f64 = 1e9;
 
 const FOCAL_LENGTH: ParamSpec = ParamSpec {
     key: "focal-length",
@@ -102,6 +104,8 @@ fn target_ui(ui: &mut egui::Ui, session: &mut Session, camera: &CameraEntry) {
         let mut changed = false;
         for (value, axis) in target.iter_mut().zip(["X", "Y", "Z"]) {
             let field = egui::DragValue::new(value)
+                .range(-FARTHEST_M..=FARTHEST_M)
+                .clamp_existing_to_range(false)
                 .speed(0.005 * camera.distance.clamp(1e-3, 1e6))
                 .max_decimals(3)
                 .prefix(format!("{axis} "))

@@ -13,8 +13,16 @@ use crate::window::widget::name_input;
 /// The list of cameras.
 #[derive(Default)]
 pub struct SavedSection {
-    /// Place and new name of the camera that is being renamed.
-    renamed: Option<(usize, String)>,
+    /// The camera that is being renamed.
+    renamed: Option<Renaming>,
+}
+
+/// A camera whose name is being typed.
+struct Renaming {
+    place: usize,
+    name: String,
+    /// The field was not shown yet: it gets the keyboard once.
+    fresh: bool,
 }
 
 /// What was clicked in the list.
@@ -46,14 +54,15 @@ impl SavedSection {
     }
 
     fn camera_ui(&mut self, ui: &mut egui::Ui, place: usize, camera: &CameraEntry, action: &mut Option<Action>) {
-        if let Some((_, name)) = self.renamed.as_mut().filter(|(renamed, _)| *renamed == place) {
-            let field = ui.add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY));
-            name_input(&field, "Name of the camera", name);
-            field.request_focus();
-            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        if let Some(renaming) = self.renamed.as_mut().filter(|renaming| renaming.place == place) {
+            let field = ui.add(egui::TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
+            name_input(&field, "Name of the camera", &renaming.name);
+            if std::mem::take(&mut renaming.fresh) {
+                field.request_focus();
+            } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
                 self.renamed = None;
-            } else if field.lost_focus() || field.clicked_elsewhere() {
-                *action = Some(Action::Rename(place, name.clone()));
+            } else if field.lost_focus() || !field.has_focus() {
+                *action = Some(Action::Rename(place, renaming.name.clone()));
             }
             return;
         }
@@ -91,7 +100,7 @@ impl SavedSection {
             }),
             Action::StartRename(place) => {
                 let name = session.document().cameras.get(place).map(|camera| camera.name.clone());
-                self.renamed = name.map(|name| (place, name));
+                self.renamed = name.map(|name| Renaming { place, name, fresh: true });
             }
             Action::Rename(place, name) => {
                 self.renamed = None;

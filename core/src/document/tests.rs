@@ -218,6 +218,49 @@ fn own_metals_travel_with_the_document() {
     assert!(resolved.notices.is_empty());
 }
 
+/// Id and n at the first wavelength of what each of the first materials has.
+fn metals(document: &Document, count: usize) -> Vec<(&str, f64)> {
+    let ids = document.materials.iter().take(count).filter_map(|entry| Some(entry.preset.as_ref()?.id.as_str()));
+    ids.map(|id| (id, document.metal(id).unwrap().n[0])).collect()
+}
+
+/// Gold with other constants.
+fn other_gold(id: &str, factor: f64) -> Preset {
+    let n = gold().n.iter().map(|n| factor * n).collect();
+    Preset { id: id.into(), name: "Other gold".into(), n, ..gold().clone() }
+}
+
+#[test]
+fn a_metal_of_the_program_is_itself_also_where_the_document_has_its_id() {
+    let mut document = workbench().document;
+    let (n, own) = (gold().n[0], other_gold("Au", 2.0));
+    document.presets.push(Arc::new(own.clone()));
+    Arc::make_mut(&mut document.materials[0]).preset = Some(PresetUse { id: "Au".into(), ..PresetUse::default() });
+    document.assign_preset(1, gold(), Assigned::KeepTextures);
+    assert_eq!(metals(&document, 2), [("Au-2", 2.0 * n), ("Au", n)]);
+    // One that came with the id of a metal of the program never takes its place.
+    document.assign_preset(2, &own, Assigned::KeepTextures);
+    document.assign_preset(0, gold(), Assigned::KeepTextures);
+    assert_eq!(metals(&document, 3), [("Au", n), ("Au", n), ("Au-2", 2.0 * n)]);
+    assert_eq!(document.presets.len(), 1);
+}
+
+#[test]
+fn a_metal_with_the_id_of_another_changes_no_other_material() {
+    let mut document = workbench().document;
+    let n = gold().n[0];
+    document.assign_preset(0, &other_gold("Mine", 2.0), Assigned::KeepTextures);
+    for _ in 0..2 {
+        document.assign_preset(1, &other_gold("Mine", 4.0), Assigned::KeepTextures);
+    }
+    assert_eq!(metals(&document, 2), [("Mine", 2.0 * n), ("Mine-2", 4.0 * n)]);
+    assert_eq!(document.presets.len(), 2, "each is stored once");
+    let long = "x".repeat(64);
+    document.assign_preset(0, &other_gold(&long, 2.0), Assigned::KeepTextures);
+    document.assign_preset(1, &other_gold(&long, 8.0), Assigned::KeepTextures);
+    assert!(document.presets.iter().all(|metal| metal.check("it").is_ok()));
+}
+
 #[test]
 fn a_material_in_use_is_not_removed() {
     let mut document = workbench().document;

@@ -146,9 +146,9 @@ fn saved(context: &Context<'_>, index: usize, draft: &Draft) -> Option<SavedMate
     let document = context.session.document();
     let used = document.materials.get(index)?.preset.as_ref();
     let metal = used.map(|used| {
-        let built_in = preset::library().iter().any(|known| known.id == used.id);
         let own = document.presets.iter().find(|metal| metal.id == used.id);
-        let constants = own.filter(|_| !built_in).map(|metal| Box::new(metal.as_ref().clone()));
+        let own = own.filter(|metal| !preset::library().iter().any(|known| *known == ***metal));
+        let constants = own.map(|metal| Box::new(metal.as_ref().clone()));
         SavedMetal { id: used.id.clone(), fresnel: used.fresnel.clone(), constants }
     });
     let tags = draft.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty()).map(Into::into).collect();

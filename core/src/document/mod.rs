@@ -252,7 +252,7 @@ impl Default for EnvironmentEntry {
 
 impl Default for LightingEntry {
     fn default() -> Self {
-        LightingEntry { method: "classical".into(), settings: Map::new(), other: Map::new() }
+        LightingEntry { method: classical::ID.into(), settings: Map::new(), other: Map::new() }
     }
 }
 

@@ -208,6 +208,17 @@ fn a_nonsense_value_is_noticed_and_left_out() {
 }
 
 #[test]
+fn a_method_or_tone_map_of_another_version_is_noticed() {
+    let mut document = workbench().document;
+    document.lighting.method = "radiosity".into();
+    document.view.tone = "film".into();
+    let notices = resolve(&document, &workbench().sources, &mut Curves::default()).notices;
+    assert_eq!(notices.len(), 2);
+    assert!(notices[0].contains("`radiosity`") && notices[0].contains("classical is shown"), "{notices:?}");
+    assert!(notices[1].contains("`film`"), "{notices:?}");
+}
+
+#[test]
 fn own_metals_travel_with_the_document() {
     let mut document = workbench().document;
     let mut own = gold().clone();

@@ -150,7 +150,7 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     history.edit("Roughness", "a", 5.95, |d| d.set_value(0, "roughness", ParamValue::Number(0.9)).unwrap());
     assert_eq!(history.past().len(), 3);
     for i in 0..100 {
-        history.edit("Move camera", "", 10.0 + 7.0 * f64::from(i), |d| d.view.camera.orbit(1.0, 0.0));
+        history.edit(VIEW_LABEL, "", 10.0 + 7.0 * f64::from(i), |d| d.view.camera.orbit(1.0, 0.0));
     }
     assert_eq!(history.past().len(), 4, "a run of camera moves is one step");
     history.go_to(1);

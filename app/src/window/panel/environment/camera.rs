@@ -1,11 +1,11 @@
 //! The lens, where the camera stands, and how the mouse moves it.
 
-use burnish_core::document::CameraEntry;
+use burnish_core::document::{CameraEntry, VIEW_LABEL};
 use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use eframe::egui;
 
 use super::{number, row_ui};
-use crate::window::panel::viewport::{MOVE, summary};
+use crate::window::panel::viewport::summary;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::session::Session;
 use crate::window::widget::{Change, param_ui};
@@ -84,13 +84,13 @@ pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
         (&ORTHOGRAPHIC, ParamValue::Toggle(camera.orthographic), |c, v| c.orthographic = v == ParamValue::Toggle(true)),
     ];
     for (spec, value, set) in rows {
-        row_ui(ui, session, (spec, MOVE), value, |document, value| set(&mut document.view.camera, value));
+        row_ui(ui, session, (spec, VIEW_LABEL), value, |document, value| set(&mut document.view.camera, value));
     }
     // There is no natural distance: the one that is there counts as unchanged.
     let ParamKind::Number { min, max, .. } = DISTANCE.kind else { return };
     let kind = ParamKind::Number { min, max, default: camera.distance };
     let distance = ParamSpec { kind, ..DISTANCE };
-    row_ui(ui, session, (&distance, MOVE), ParamValue::Number(camera.distance), |document, value| {
+    row_ui(ui, session, (&distance, VIEW_LABEL), ParamValue::Number(camera.distance), |document, value| {
         document.view.camera.distance = number(value);
     });
     target_ui(ui, session, &camera);
@@ -115,7 +115,7 @@ fn target_ui(ui: &mut egui::Ui, session: &mut Session, camera: &CameraEntry) {
             changed |= field.changed();
         }
         if changed {
-            session.edit(MOVE, "", |document| document.view.camera.target = target);
+            session.edit(VIEW_LABEL, "", |document| document.view.camera.target = target);
         }
     });
 }

@@ -1,11 +1,10 @@
 //! Saved points of view, and those of the model.
 
-use burnish_core::document::CameraEntry;
+use burnish_core::document::{CameraEntry, VIEW_LABEL};
 use eframe::egui;
 
 use super::Context;
 use crate::window::commands::Command;
-use crate::window::panel::viewport::MOVE;
 use crate::window::request::Request;
 use crate::window::session::Session;
 use crate::window::widget::name_input;
@@ -89,7 +88,7 @@ impl SavedSection {
 
     fn act(&mut self, action: Action, session: &mut Session) {
         match action {
-            Action::Recall(camera) => session.edit(MOVE, "", |document| {
+            Action::Recall(camera) => session.edit(VIEW_LABEL, "", |document| {
                 document.view.camera = CameraEntry { name: String::new(), ..camera };
             }),
             Action::Replace(place) => session.edit("Replace camera", "", |document| {
@@ -148,7 +147,7 @@ mod tests {
             document.save_camera("Camera", &camera);
         });
         let saved = session.document().cameras[start].clone();
-        session.edit(MOVE, "", |document| document.view.camera.orbit(30.0, 0.0));
+        session.edit(VIEW_LABEL, "", |document| document.view.camera.orbit(30.0, 0.0));
         section.act(Action::Recall(saved.clone()), &mut session);
         assert_eq!(session.document().view.camera.yaw_deg, saved.yaw_deg);
         assert_eq!(session.document().view.camera.name, "");

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Kills the window in the middle of edits and looks at what stays: `tests/kill.sh BURNISH [TRIES]`.
 #
-# Needs Xvfb and xdotool. Each try opens a document in a real window, adds materials by Ctrl+N every one or two seconds and saves
+# Needs Xvfb, xdotool and python3. Each try opens a document in a real window, adds materials by Ctrl+N every one or two seconds and saves
 # now and then; at a random moment it is killed. Then the document must be whole, the recovery file must be whole, and
-# every edit that is older than ten seconds must be in one of them. The next start takes it up.
+# every edit that is older than ten seconds must be in one of them. The next start takes the recovery file up: its window
+# shows the document as unsaved, and saving it brings all those edits into the document.
 set -eu
 
 program=$(realpath "$1")
@@ -28,23 +29,47 @@ stop() {
     exit 1
 }
 
-document="$folder/bench.burnish"
-# Materials that Ctrl+N added are the edits that are counted.
-edits_in() { grep -c '"name": "Material' "$1" || true; }
+# No other window of the program has it in its title: that of the default scene ends in `bench`.
+name=kill-trial
+document="$folder/$name.burnish"
+# Materials that Ctrl+N added are the edits that are counted, in a document or a recovery file. Fails unless it is whole.
+edits_in() {
+    python3 - "$1" <<'PYTHON'
+import json, sys
+with open(sys.argv[1], encoding="utf-8") as file:
+    content = json.load(file)
+materials = content.get("document", content).get("materials", [])
+print(sum(material["name"].startswith("Material") for material in materials))
+PYTHON
+}
 now() { date +%s; }
 
-open() { # ARGS: opens the window and waits for it
-    "$program" "$@" >"$folder/log" 2>&1 &
-    window=$!
-    local start id=''
+id=''
+await() { # TITLE: waits for the window with this title, a regular expression
+    local start
     start=$(now)
+    id=''
     while [ -z "$id" ]; do
-        [ $(($(now) - start)) -lt 90 ] || stop "no window: $(cat "$folder/log")"
+        [ $(($(now) - start)) -lt 90 ] || stop "no window is called $1: $(cat "$folder/log")"
         kill -0 "$window" 2>/dev/null || stop "it ended: $(cat "$folder/log")"
         sleep 0.2
-        id=$(xdotool search --name 'bench.* - Burnish$' 2>/dev/null | head -1) || true
+        id=$(xdotool search --name "$1" 2>/dev/null | head -1) || true
     done
+}
+
+open() { # TITLE ARGS: opens the window and waits for it
+    local title=$1
+    shift
+    "$program" "$@" >"$folder/log" 2>&1 &
+    window=$!
+    await "$title"
     xdotool windowfocus "$id"
+}
+
+end() {
+    kill -9 "$window"
+    wait "$window" 2>/dev/null || true
+    window=''
 }
 
 for try in $(seq "$tries"); do
@@ -52,7 +77,7 @@ for try in $(seq "$tries"); do
     cat >"$document" <<'JSON'
 {"format": "burnish-document", "version": 1, "scene": "gallery:workbench"}
 JSON
-    open "$document"
+    open "^$name\\*? - Burnish\$" "$document"
     start=$(now)
     length=$((grace_secs + 2 + RANDOM % 12))
     # What must not be lost: the edits of ten seconds before the end.
@@ -64,30 +89,31 @@ JSON
         [ $((RANDOM % 9)) != 0 ] || xdotool key ctrl+s
         sleep "1.$((RANDOM % 9))" # slower than frames on a busy machine: two presses in one frame are one
     done
-    kill -9 "$window"
-    wait "$window" 2>/dev/null || true
-    end=$(now)
-    window=''
+    end
+    ended=$(now)
     due=0
-    for time in $times; do [ $((end - time)) -le "$grace_secs" ] || due=$((due + 1)); done
+    for time in $times; do [ $((ended - time)) -le "$grace_secs" ] || due=$((due + 1)); done
 
     "$program" info "$document" >/dev/null 2>"$folder/log" || stop "the document is damaged: $(cat "$folder/log")"
-    kept=$(edits_in "$document")
+    kept=$(edits_in "$document") || stop "the document is damaged"
+    recoverable=''
     for file in "$folder"/data/burnish/recovery/*.json; do
         [ -e "$file" ] || continue
-        # A whole file ends in the brace that closes it.
-        [ "$(tail -c 2 "$file")" = '}' ] || stop "$file is cut off"
-        found=$(edits_in "$file")
+        found=$(edits_in "$file") || stop "$file is damaged"
+        recoverable=$found
         [ "$found" -le "$kept" ] || kept=$found
     done
     [ "$kept" -ge "$due" ] || stop "$kept edits stayed of $due that were $grace_secs s old ($presses in all)"
     printf 'try %s: killed after %s s, %s keys pressed, %s edits kept\n' "$try" "$length" "$presses" "$kept"
 
-    if ls "$folder"/data/burnish/recovery/*.json >/dev/null 2>&1; then
-        open --recover
-        kill -9 "$window"
-        wait "$window" 2>/dev/null || true
-        window=''
+    if [ -n "$recoverable" ]; then
+        open "^$name\\* - Burnish\$" --recover
+        xdotool key ctrl+s
+        await "^$name - Burnish\$"
+        end
+        recovered=$(edits_in "$document") || stop "the recovered document is damaged"
+        [ "$recovered" = "$recoverable" ] || stop "$recovered edits were recovered of $recoverable in the recovery file"
+        [ "$recovered" -ge "$due" ] || stop "$recovered edits were recovered of $due that were $grace_secs s old"
     fi
 done
 printf '%s tries: files whole, every edit older than %s s kept\n' "$tries" "$grace_secs"

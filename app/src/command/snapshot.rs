@@ -86,11 +86,30 @@ fn check(args: &Args) -> Result<(), Failure> {
         let reason = format!("{file}: there is no folder {folder}; create it or choose another --out");
         return Err(Failure::resources(reason));
     }
-    let same = |reference: &PathBuf| std::path::absolute(reference).ok() == std::path::absolute(&args.out).ok();
-    if args.compare.as_ref().is_some_and(same) {
+    let Some(reference) = &args.compare else { return Ok(()) };
+    if same_file(reference, &args.out) {
         return Err(Failure::usage("--out would overwrite the picture of --compare; name another file"));
     }
+    let difference = difference_path(&args.out);
+    if same_file(reference, &difference) {
+        let difference = difference.display();
+        let reason = format!("the difference, {difference}, would overwrite the picture of --compare; rename --out");
+        return Err(Failure::usage(reason));
+    }
     Ok(())
+}
+
+/// Where the difference to the reference goes.
+fn difference_path(out: &Path) -> PathBuf {
+    out.with_extension("diff.png")
+}
+
+/// True where both paths lead to one file, through links too; names decide where there is none yet.
+fn same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => std::path::absolute(a).ok() == std::path::absolute(b).ok(),
+    }
 }
 
 fn panel(name: &str) -> Result<Pane, String> {
@@ -193,7 +212,7 @@ fn compare(args: &Args, reference: &Path, out: &mut dyn Write, err: &mut dyn Wri
     }
     let seen = flip(&expected, &actual, 0.0, PIXELS_PER_DEGREE)
         .map_err(|e| Failure::input(reference, format!("cannot be compared with {file}: {e}")))?;
-    let difference = args.out.with_extension("diff.png");
+    let difference = difference_path(&args.out);
     write_picture(&seen.picture(), &difference, ToneMap::None, 0.0).map_err(Failure::resources)?;
     writeln!(out, "flip {:.6}, threshold {}", seen.mean, args.threshold)?;
     if seen.mean <= f64::from(args.threshold) {

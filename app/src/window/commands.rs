@@ -186,7 +186,7 @@ pub const TABLE: &[Entry] = &[
         ctrl(Key::D),
         "Copy the material under a new name; the selected objects get the copy.",
     ),
-    entry(Menu::Material, Command::RemoveMaterial, "Remove material", None, "Remove a material that no object has."),
+    entry(Menu::Material, Command::RemoveMaterial, "Delete material", None, "Delete a material that no object has."),
     entry(Menu::Material, Command::CopyMaterial, "Copy material", ctrl_shift(Key::C), "Remember the material."),
     entry(
         Menu::Material,
@@ -276,8 +276,7 @@ impl Command {
                 unless(session.material().is_some(), "There is no material.")
             }
             Command::RemoveMaterial => {
-                let mut trial = (**session.document()).clone();
-                let removable = trial.remove_material(session.selection.material);
+                let removable = session.document().can_remove_material(session.selection.material);
                 unless(removable, "An object has it, or it comes with the model.")
             }
             Command::Hide | Command::Isolate | Command::ApplyToSelected | Command::Rename => {

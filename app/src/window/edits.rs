@@ -117,7 +117,7 @@ fn add(session: &mut Session, label: &str, make: impl FnOnce(&mut Document) -> O
 fn remove(session: &mut Session) {
     let index = session.selection.material;
     let Some(name) = session.material().map(|entry| entry.name.clone()) else { return };
-    session.edit("Remove material", &name, |document| _ = document.remove_material(index));
+    session.edit("Delete material", &name, |document| _ = document.remove_material(index));
 }
 
 fn apply(session: &mut Session, label: &str, objects: &[String]) {

@@ -107,7 +107,9 @@ impl Offscreen {
                 self.time_secs += STEP_SECS;
                 quiet += 1;
             } else {
-                return self.read(output);
+                // A window with words where the picture belongs is no picture of the document.
+                let fault = workbench.stage().status().and_then(|status| status.message.clone());
+                return fault.map_or_else(|| self.read(output), |reason| Err(OffscreenError::Picture(reason)));
             }
         }
     }

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{Curves, Document, History, MaterialEntry, Missing, Opened, Resolved, Sources, resolve};
 use burnish_core::scene::Scene;
 
@@ -202,7 +203,9 @@ impl Session {
             && before.assignments == now.assignments
             && before.objects == now.objects
             && before.presets == now.presets
-            && before.lighting == now.lighting;
+            && before.lighting == now.lighting
+            // A notice tells of an unknown one.
+            && before.view.tone.parse::<ToneMap>().is_err() == now.view.tone.parse::<ToneMap>().is_err();
         if same {
             self.revision += 1;
         } else {

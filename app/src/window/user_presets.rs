@@ -59,6 +59,11 @@ enum Task {
 enum Event {
     /// A preset came in; the key by which it is assigned.
     Imported(String),
+    /// One came in under another name, since its own was taken.
+    ImportedAs {
+        key: String,
+        notice: String,
+    },
     Notice(String),
     Error(String),
 }
@@ -80,7 +85,7 @@ impl UserPresets {
         self.waiting.push_back(Task::Import(path));
     }
 
-    /// Keeps a material. One of the same name is replaced.
+    /// Keeps a material, under a name with a number where its own is taken.
     pub fn save(&mut self, material: SavedMaterial) {
         self.waiting.push_back(Task::Save(Box::new(material)));
     }
@@ -113,6 +118,10 @@ impl UserPresets {
                 for event in events {
                     match event {
                         Event::Imported(key) => imported.push(key),
+                        Event::ImportedAs { key, notice } => {
+                            imported.push(key);
+                            requests.push(Request::Notice(notice));
+                        }
                         Event::Notice(text) => requests.push(Request::Notice(text)),
                         Event::Error(text) => requests.push(Request::Error(text)),
                     }
@@ -198,8 +207,8 @@ impl Task {
     fn run(self, folder: &Path) -> Option<Event> {
         let done = match self {
             Task::Read => return None,
-            Task::Import(path) => import(&path, folder).map(Event::Imported),
-            Task::Save(material) => save(&material, folder).map(Event::Notice),
+            Task::Import(path) => import(&path, folder),
+            Task::Save(material) => save(&material, folder).map(|(_, notice)| Event::Notice(notice)),
             Task::Rename { path, name } => rename(&path, &name, folder).map(Event::Notice),
             Task::Remove(path) => remove(&path, folder).map(Event::Notice),
         };
@@ -207,18 +216,18 @@ impl Task {
     }
 }
 
-fn import(path: &Path, folder: &Path) -> Result<String, String> {
+fn import(path: &Path, folder: &Path) -> Result<Event, String> {
     match Preset::read(path) {
         Ok(metal) => {
             own_id(&metal, path)?;
-            write(&metals_folder(folder).join(format!("{}.json", metal.id)), &metal)?;
-            Ok(metal.id)
+            import_metal(metal, folder)
         }
         // A saved material is told from a metal by its fields; the message is that of what it says to be.
         Err(fault) => match SavedMaterial::read(path) {
             Ok(material) => {
-                save(&material, folder)?;
-                Ok(key_of(&material))
+                let (kept, notice) = save(&material, folder)?;
+                let key = key_of(&kept);
+                Ok(if kept.name == material.name { Event::Imported(key) } else { Event::ImportedAs { key, notice } })
             }
             Err(saved::SavedError::Json { .. }) => Err(fault.to_string()),
             Err(saved::SavedError::Field { field, .. }) if field == "format" => Err(fault.to_string()),
@@ -227,27 +236,58 @@ fn import(path: &Path, folder: &Path) -> Result<String, String> {
     }
 }
 
-fn save(material: &SavedMaterial, folder: &Path) -> Result<String, String> {
-    let folder = materials_folder(folder);
-    make(&folder)?;
-    let path = file_of(&material.name, &folder);
-    material.write(&path).map_err(|e| e.to_string())?;
-    Ok(format!("Saved `{}` among your presets", material.name))
+/// Copies a metal; one that is there already stays alone, another of its id is never written over.
+fn import_metal(metal: Preset, folder: &Path) -> Result<Event, String> {
+    let known = Listing::read(folder).metals;
+    if known.iter().any(|(_, known)| **known == metal) {
+        return Ok(Event::Imported(metal.id));
+    }
+    let file = |id: &str| metals_folder(folder).join(format!("{id}.json"));
+    let built_in = |id: &str| preset::library().iter().any(|known| known.id == id);
+    let taken = |id: &str| built_in(id) || file(id).exists() || known.iter().any(|(_, known)| known.id == id);
+    if !taken(&metal.id) {
+        write(&file(&metal.id), &metal)?;
+        return Ok(Event::Imported(metal.id));
+    }
+    let key = preset::numbered_id(&metal.id, taken);
+    let notice = format!("You have another metal with the id `{}`; the new one got the id `{key}`", metal.id);
+    let metal = Preset { id: key.clone(), ..metal };
+    write(&file(&key), &metal)?;
+    Ok(Event::ImportedAs { key, notice })
 }
 
-/// The file of a name: that which already holds it, else a new one.
-fn file_of(name: &str, folder: &Path) -> PathBuf {
-    let holder = files(folder).into_iter().find(|path| SavedMaterial::read(path).is_ok_and(|known| known.name == name));
+/// Writes a material into a new file, under a name that is free. Returns it as it is kept, and what to tell.
+fn save(material: &SavedMaterial, folder: &Path) -> Result<(SavedMaterial, String), String> {
+    let known = Listing::read(folder).materials;
+    let taken = |name: &str| known.iter().any(|(_, known)| known.name == name);
+    let name = &material.name;
+    if known.iter().any(|(_, known)| **known == *material) {
+        return Ok((material.clone(), format!("`{name}` is among your presets already")));
+    }
+    // Names have an end, and the number must fit before it.
+    let stem: String = name.chars().take(saved::NAME_MAX - 8).collect();
+    let mut names = std::iter::once(name.clone()).chain((2u64..).map(|number| format!("{stem} {number}")));
+    let free = names.find(|candidate| !taken(candidate)).unwrap_or_default();
+    let notice = match free == *name {
+        true => format!("Saved `{name}` among your presets"),
+        false => format!("You have another preset `{name}`; saved the new one as `{free}`"),
+    };
+    let kept = SavedMaterial { name: free, ..material.clone() };
+    let folder = materials_folder(folder);
+    make(&folder)?;
+    kept.write(&new_file(&kept.name, &folder)).map_err(|e| e.to_string())?;
+    Ok((kept, notice))
+}
+
+/// A file for a name that does not exist yet.
+fn new_file(name: &str, folder: &Path) -> PathBuf {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let stem: String = name.chars().map(plain).take(40).collect();
-    let free = || {
-        let names = (1u64..).map(|number| match number {
-            1 => format!("{stem}.json"),
-            _ => format!("{stem}-{number}.json"),
-        });
-        names.map(|name| folder.join(name)).find(|path| !path.exists()).unwrap_or_default()
-    };
-    holder.unwrap_or_else(free)
+    let names = (1u64..).map(|number| match number {
+        1 => format!("{stem}.json"),
+        _ => format!("{stem}-{number}.json"),
+    });
+    names.map(|name| folder.join(name)).find(|path| !path.exists()).unwrap_or_default()
 }
 
 fn rename(path: &Path, name: &str, folder: &Path) -> Result<String, String> {
@@ -333,20 +373,41 @@ mod tests {
     }
 
     #[test]
-    fn a_material_is_saved_replaced_renamed_and_removed() {
+    fn a_metal_with_the_id_of_an_own_one_gets_another_and_the_first_stays() {
+        let folder = Folder::new("clash");
+        let import = |name: &str, id: &str| {
+            let path = folder.0.join("in.json");
+            let metal = Preset { id: id.into(), name: name.into(), ..preset::find("Au").unwrap() };
+            fs::write(&path, serde_json::to_string(&metal).unwrap()).unwrap();
+            Task::Import(path).run(&folder.0)
+        };
+        for _ in 0..2 {
+            assert_eq!(import("One", "Mine"), Some(Event::Imported("Mine".into())), "the same again changes nothing");
+        }
+        let Some(Event::ImportedAs { key, notice }) = import("Two", "Mine") else { panic!() };
+        assert!(key == "Mine-2" && notice.contains("`Mine-2`"), "{key}: {notice}");
+        let listing = Listing::read(&folder.0);
+        let known: Vec<_> = listing.metals.iter().map(|(_, m)| (m.name.as_str(), m.id.as_str())).collect();
+        assert_eq!(known, [("One", "Mine"), ("Two", "Mine-2")]);
+    }
+
+    #[test]
+    fn a_material_is_saved_beside_its_namesake_renamed_and_removed() {
         let folder = Folder::new("material");
         let saved = |roughness| {
             let material = Material { roughness, ..Material::default() };
             SavedMaterial::new("Fine / satin", Vec::new(), &material, None)
         };
-        for roughness in [0.2, 0.3] {
+        for (roughness, words) in [(0.2, "Saved"), (0.3, "`Fine / satin 2`")] {
             let done = Task::Save(Box::new(saved(roughness))).run(&folder.0);
-            assert!(matches!(done, Some(Event::Notice(_))), "{done:?}");
+            assert!(matches!(&done, Some(Event::Notice(text)) if text.contains(words)), "{done:?}");
         }
         let listing = Listing::read(&folder.0);
-        assert_eq!(listing.materials.len(), 1);
+        assert_eq!(listing.materials.len(), 2);
         let (path, known) = listing.materials[0].clone();
-        assert_eq!(*known, saved(0.3));
+        assert_eq!(*known, saved(0.2));
+        assert_eq!(*listing.materials[1].1, SavedMaterial { name: "Fine / satin 2".into(), ..saved(0.3) });
+        Task::Remove(listing.materials[1].0.clone()).run(&folder.0);
         let renamed = Task::Rename { path: path.clone(), name: "Satin".into() }.run(&folder.0);
         assert_eq!(renamed, Some(Event::Notice("Renamed to `Satin`".into())));
         assert_eq!(Listing::read(&folder.0).materials[0].1.name, "Satin");

@@ -46,17 +46,63 @@ impl Document {
         self.materials.get_mut(index).map(Arc::make_mut)
     }
 
-    /// Puts a metal on a material. One that does not come with the program is stored in the document.
+    /// Puts a metal on a material. One that does not come with the program is stored in the document, under another
+    /// id where its own means another metal already.
     pub fn assign_preset(&mut self, index: usize, metal: &Preset, textures: Assigned) {
+        if index >= self.materials.len() {
+            return;
+        }
+        let id = self.keep_metal(metal);
         let Some(entry) = self.material_mut(index) else { return };
         let kept = entry.preset.take().unwrap_or_default();
-        entry.preset = Some(PresetUse { id: metal.id.clone(), ..kept });
+        entry.preset = Some(PresetUse { id, ..kept });
         entry.set_textures(textures);
-        let built_in = preset::library().iter().any(|known| known == metal);
-        if !built_in && !self.presets.iter().any(|known| **known == *metal) {
-            self.presets.retain(|known| known.id != metal.id);
-            self.presets.push(Arc::new(metal.clone()));
+    }
+
+    /// Makes the document know a metal; returns the id that means it here. What other materials show stays the same.
+    fn keep_metal(&mut self, metal: &Preset) -> String {
+        if preset::library().iter().any(|known| known == metal) {
+            // The document's own come first: one with the id of a metal of the program makes way.
+            if self.presets.iter().any(|own| own.id == metal.id && **own != *metal) {
+                self.rename_metal(&metal.id);
+            }
+            return metal.id.clone();
         }
+        let alike = |own: &Preset| own.wavelength_nm == metal.wavelength_nm && own.n == metal.n && own.k == metal.k;
+        if let Some(own) = self.presets.iter_mut().find(|own| own.id == metal.id && alike(own)) {
+            *own = Arc::new(metal.clone());
+            return metal.id.clone();
+        }
+        if self.metal(&metal.id).is_none() {
+            self.presets.push(Arc::new(metal.clone()));
+            return metal.id.clone();
+        }
+        // It may have come before, and got another id then.
+        if let Some(own) = self.presets.iter().find(|own| own.name == metal.name && alike(own)) {
+            return own.id.clone();
+        }
+        let id = self.free_metal_id(&metal.id);
+        self.presets.push(Arc::new(Preset { id: id.clone(), ..metal.clone() }));
+        id
+    }
+
+    /// Gives the document's own metal another id, which the materials that have it follow.
+    fn rename_metal(&mut self, old: &str) {
+        let new = self.free_metal_id(old);
+        for own in self.presets.iter_mut().filter(|own| own.id == old) {
+            Arc::make_mut(own).id = new.clone();
+        }
+        let has_it = |entry: &MaterialEntry| entry.preset.as_ref().is_some_and(|used| used.id == old);
+        for entry in self.materials.iter_mut().filter(|entry| has_it(entry)) {
+            if let Some(used) = &mut Arc::make_mut(entry).preset {
+                used.id = new.clone();
+            }
+        }
+    }
+
+    /// The first of `id-2`, `id-3` ... that means no metal.
+    fn free_metal_id(&self, id: &str) -> String {
+        preset::numbered_id(id, |candidate| self.metal(candidate).is_some())
     }
 
     /// Makes a material like a saved one; `base` is what its factors start from, see

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::{Document, TextureChoice, absolute, relative};
+use super::{CameraEntry, Document, TextureChoice, absolute, relative};
 use crate::file::{FileError, read_bounded, write_atomic};
 
 /// Value of the field `format`.
@@ -89,8 +89,13 @@ impl Document {
         format!("{:#}\n", Value::Object(fields))
     }
 
-    /// Writes the file as a whole or not at all.
+    /// Writes the file as a whole or not at all. What could not be read again is refused: the file stays as it was.
     pub fn save(&self, path: &Path) -> Result<(), DocumentError> {
+        self.check().map_err(|reason| DocumentError::Invalid {
+            path: path.into(),
+            reason,
+            remedy: "nothing was written; mend it, or undo to before it, then save again",
+        })?;
         Ok(write_atomic(path, self.to_text(&folder_of(path)).as_bytes())?)
     }
 
@@ -105,6 +110,10 @@ impl Document {
             if !range.contains(&value) {
                 return Err(format!("field `{field}` is {value}; it takes {} to {}", range.start(), range.end()));
             }
+        }
+        check_camera("view.camera", &self.view.camera)?;
+        for (place, camera) in self.cameras.iter().enumerate() {
+            check_camera(&format!("cameras[{place}]"), camera)?;
         }
         let mut names = std::collections::BTreeSet::new();
         for material in &self.materials {
@@ -136,6 +145,31 @@ impl Document {
             }
         }
     }
+}
+
+/// Numbers of a camera that no view has. JSON has no word for those that are not finite.
+fn check_camera(field: &str, camera: &CameraEntry) -> Result<(), String> {
+    let [x, y, z] = camera.target;
+    let finite = [
+        ("target", x),
+        ("target", y),
+        ("target", z),
+        ("distance", camera.distance),
+        ("yaw_deg", camera.yaw_deg),
+        ("pitch_deg", camera.pitch_deg),
+        ("roll_deg", camera.roll_deg),
+        ("yfov_deg", camera.yfov_deg),
+    ];
+    if let Some((name, value)) = finite.into_iter().find(|(_, value)| !value.is_finite()) {
+        return Err(format!("field `{field}.{name}` is {value}; it takes finite numbers"));
+    }
+    if camera.distance <= 0.0 {
+        return Err(format!("field `{field}.distance` is {}; it takes numbers above 0", camera.distance));
+    }
+    if !(1.0..=170.0).contains(&camera.yfov_deg) {
+        return Err(format!("field `{field}.yfov_deg` is {}; it takes 1 to 170", camera.yfov_deg));
+    }
+    Ok(())
 }
 
 /// The folder of a file, absolute where the current folder is known.

@@ -8,8 +8,8 @@ use super::Document;
 const COALESCE_SECS: f64 = 0.5;
 /// Steps that are kept; the oldest are forgotten.
 const MAX_STEPS: usize = 1000;
-/// Label of a change of the view; a run of them is one step however long it takes.
-pub(super) const VIEW: &str = "Move camera";
+/// Label of every step that moves the camera: a run of them is one step however long it takes.
+pub const VIEW_LABEL: &str = "Move camera";
 
 /// An edit that can be undone.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ impl History {
         self.future.clear();
         let sealed = std::mem::take(&mut self.sealed);
         if let Some(last) = self.past.last_mut().filter(|last| !sealed && last.label == label && last.target == target)
-            && (label == VIEW || (0.0..=COALESCE_SECS).contains(&(now_secs - last.time_secs)))
+            && (label == VIEW_LABEL || (0.0..=COALESCE_SECS).contains(&(now_secs - last.time_secs)))
         {
             last.time_secs = now_secs;
             return true;

@@ -26,7 +26,7 @@ use crate::param::{self, ParamValue, Settings};
 
 pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
-pub use history::{History, Step};
+pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
 pub use open::{Missing, MissingKind, Opened, Sources, is_document, load_image, open, placeholder, reload};
 pub use paths::{absolute, relative};
@@ -252,7 +252,7 @@ impl Default for EnvironmentEntry {
 
 impl Default for LightingEntry {
     fn default() -> Self {
-        LightingEntry { method: "classical".into(), settings: Map::new(), other: Map::new() }
+        LightingEntry { method: classical::ID.into(), settings: Map::new(), other: Map::new() }
     }
 }
 

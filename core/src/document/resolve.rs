@@ -7,6 +7,8 @@ use super::{
     Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, material_keys, object_keys, placeholder,
     role_key,
 };
+use crate::color::tone::ToneMap;
+use crate::lighting::classical;
 use crate::material::params::{self, Values};
 use crate::material::preset::{self, Preset};
 use crate::material::{Material, Reflectance, Sampler, TextureRef, TextureRole};
@@ -58,7 +60,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         Arc::new(placeholder(document))
     });
     let mut scene = Scene::clone(&model);
-    let mut notices = Vec::new();
+    let mut notices = unknown_words(document);
 
     let mut images = Images { list: &mut scene.images, by_path: BTreeMap::new(), sources, missing: &mut missing };
     let model_keys = material_keys(&model);
@@ -90,6 +92,20 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
     let strength = map.strength * document.environment.strength as f32;
     scene.environment = Some(Arc::new(Environment { rotation: turned, strength, ..Environment::clone(&map) }));
     Resolved { scene: Arc::new(scene), object_keys, base, missing, notices }
+}
+
+/// What the document asks for by a name that this version does not know.
+fn unknown_words(document: &Document) -> Vec<String> {
+    let mut notices = Vec::new();
+    let method = &document.lighting.method;
+    if method != classical::ID {
+        notices.push(format!("method `{method}` is not in this version; {} is shown", classical::ID));
+    }
+    let tone = &document.view.tone;
+    if tone.parse::<ToneMap>().is_err() {
+        notices.push(format!("tone map `{tone}` is not in this version; {} is shown", ToneMap::default().id()));
+    }
+    notices
 }
 
 /// The changed factors of an entry; what cannot be read is noticed.

@@ -58,6 +58,34 @@ fn what_is_no_document_is_refused_with_the_field_and_what_to_do() {
 }
 
 #[test]
+fn numbers_that_no_file_can_hold_are_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    let path = folder.join("a.burnish");
+    let document = workbench().document;
+    document.save(&path).unwrap();
+    let refused = |change: fn(&mut Document)| {
+        let mut changed = document.clone();
+        let camera = changed.view.camera.clone();
+        changed.save_camera("Camera", &camera);
+        change(&mut changed);
+        changed.save(&path).unwrap_err().to_string()
+    };
+    for (fault, field) in [
+        (refused(|d| d.view.camera.target[1] = f64::INFINITY), "view.camera.target"),
+        (refused(|d| d.view.camera.distance = 0.0), "view.camera.distance"),
+        (refused(|d| d.view.camera.yfov_deg = 171.0), "view.camera.yfov_deg"),
+        (refused(|d| d.view.exposure_ev = f64::NAN), "view.exposure_ev"),
+        (refused(|d| d.cameras.iter_mut().for_each(|c| c.roll_deg = f64::NAN)), "cameras[0].roll_deg"),
+    ] {
+        assert!(
+            fault.contains("a.burnish") && fault.contains(field) && fault.contains("nothing was written"),
+            "{fault}"
+        );
+    }
+    assert_eq!(Document::read(&path).unwrap(), document);
+}
+
+#[test]
 fn a_new_document_resolves_to_its_model() {
     let opened = workbench();
     let model = opened.sources.models[DEFAULT_SCENE].clone();
@@ -122,7 +150,7 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     history.edit("Roughness", "a", 5.95, |d| d.set_value(0, "roughness", ParamValue::Number(0.9)).unwrap());
     assert_eq!(history.past().len(), 3);
     for i in 0..100 {
-        history.edit("Move camera", "", 10.0 + 7.0 * f64::from(i), |d| d.view.camera.orbit(1.0, 0.0));
+        history.edit(VIEW_LABEL, "", 10.0 + 7.0 * f64::from(i), |d| d.view.camera.orbit(1.0, 0.0));
     }
     assert_eq!(history.past().len(), 4, "a run of camera moves is one step");
     history.go_to(1);
@@ -180,6 +208,17 @@ fn a_nonsense_value_is_noticed_and_left_out() {
 }
 
 #[test]
+fn a_method_or_tone_map_of_another_version_is_noticed() {
+    let mut document = workbench().document;
+    document.lighting.method = "radiosity".into();
+    document.view.tone = "film".into();
+    let notices = resolve(&document, &workbench().sources, &mut Curves::default()).notices;
+    assert_eq!(notices.len(), 2);
+    assert!(notices[0].contains("`radiosity`") && notices[0].contains("classical is shown"), "{notices:?}");
+    assert!(notices[1].contains("`film`"), "{notices:?}");
+}
+
+#[test]
 fn own_metals_travel_with_the_document() {
     let mut document = workbench().document;
     let mut own = gold().clone();
@@ -188,6 +227,49 @@ fn own_metals_travel_with_the_document() {
     assert_eq!(document.presets.len(), 1);
     let resolved = resolve(&document, &workbench().sources, &mut Curves::default());
     assert!(resolved.notices.is_empty());
+}
+
+/// Id and n at the first wavelength of what each of the first materials has.
+fn metals(document: &Document, count: usize) -> Vec<(&str, f64)> {
+    let ids = document.materials.iter().take(count).filter_map(|entry| Some(entry.preset.as_ref()?.id.as_str()));
+    ids.map(|id| (id, document.metal(id).unwrap().n[0])).collect()
+}
+
+/// Gold with other constants.
+fn other_gold(id: &str, factor: f64) -> Preset {
+    let n = gold().n.iter().map(|n| factor * n).collect();
+    Preset { id: id.into(), name: "Other gold".into(), n, ..gold().clone() }
+}
+
+#[test]
+fn a_metal_of_the_program_is_itself_also_where_the_document_has_its_id() {
+    let mut document = workbench().document;
+    let (n, own) = (gold().n[0], other_gold("Au", 2.0));
+    document.presets.push(Arc::new(own.clone()));
+    Arc::make_mut(&mut document.materials[0]).preset = Some(PresetUse { id: "Au".into(), ..PresetUse::default() });
+    document.assign_preset(1, gold(), Assigned::KeepTextures);
+    assert_eq!(metals(&document, 2), [("Au-2", 2.0 * n), ("Au", n)]);
+    // One that came with the id of a metal of the program never takes its place.
+    document.assign_preset(2, &own, Assigned::KeepTextures);
+    document.assign_preset(0, gold(), Assigned::KeepTextures);
+    assert_eq!(metals(&document, 3), [("Au", n), ("Au", n), ("Au-2", 2.0 * n)]);
+    assert_eq!(document.presets.len(), 1);
+}
+
+#[test]
+fn a_metal_with_the_id_of_another_changes_no_other_material() {
+    let mut document = workbench().document;
+    let n = gold().n[0];
+    document.assign_preset(0, &other_gold("Mine", 2.0), Assigned::KeepTextures);
+    for _ in 0..2 {
+        document.assign_preset(1, &other_gold("Mine", 4.0), Assigned::KeepTextures);
+    }
+    assert_eq!(metals(&document, 2), [("Mine", 2.0 * n), ("Mine-2", 4.0 * n)]);
+    assert_eq!(document.presets.len(), 2, "each is stored once");
+    let long = "x".repeat(64);
+    document.assign_preset(0, &other_gold(&long, 2.0), Assigned::KeepTextures);
+    document.assign_preset(1, &other_gold(&long, 8.0), Assigned::KeepTextures);
+    assert!(document.presets.iter().all(|metal| metal.check("it").is_ok()));
 }
 
 #[test]

@@ -23,6 +23,19 @@ use crate::surface::fresnel::{Fresnel, TABLE_SIZE, exact};
 /// Names of the curves that [`Preset::fresnel`] makes.
 pub const FORMS: [&str; 3] = ["spectral", "rescaled", "schlick"];
 
+/// Longest id, in characters.
+const MAX_ID: usize = 64;
+
+/// The first of `id-2`, `id-3` ... that is not taken; as short as ids must be.
+pub fn numbered_id(id: &str, taken: impl Fn(&str) -> bool) -> String {
+    let mut ids = (2u64..).map(|number| {
+        let suffix = format!("-{number}");
+        let stem: String = id.chars().take(MAX_ID - suffix.len()).collect();
+        stem + &suffix
+    });
+    ids.find(|candidate| !taken(candidate)).unwrap_or_default()
+}
+
 /// Largest preset file that is read.
 const MAX_BYTES: u64 = 4 << 20;
 

@@ -18,7 +18,7 @@ pub const VERSION: u32 = 1;
 /// Largest file that is read: the table of an embedded metal may be long.
 const MAX_BYTES: u64 = 4 << 20;
 /// Longest name, in characters.
-const NAME_MAX: usize = 80;
+pub const NAME_MAX: usize = 80;
 
 /// A material that stands alone. Fields that this version does not know are kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

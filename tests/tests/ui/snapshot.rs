@@ -79,8 +79,17 @@ fn refused() {
     gone.save(&folder.join("gone.burnish")).expect("the folder can be written");
     let (code, _, err) = burnish(&[&at("gone.burnish"), "--out", &out]);
     assert!(code == 3 && err.contains("gone.glb") && err.contains("relink"), "{code}: {err}");
+    // The reference under another name of its folder, and where the difference would go.
+    let kept = at("shot.diff.png");
+    std::fs::write(&kept, "kept").expect("the folder can be written");
+    let detour = folder.join("inner");
+    std::fs::create_dir_all(&detour).expect("the folder can be written");
+    let around = detour.join("../shot.diff.png").to_string_lossy().into_owned();
     for usage in [
         &["gallery:workbench", "--out", &out, "--compare", &out][..],
+        &["gallery:workbench", "--out", &out, "--compare", &kept],
+        &["gallery:workbench", "--out", &out, "--compare", &around],
+        &["gallery:workbench", "--out", &kept, "--compare", &around],
         &["gallery:workbench", "--ui", "--out", &at("shot.exr")],
         &["gallery:workbench", "--out", &out, "--panel", "scene"],
         &["gallery:workbench", "--ui", "--out", &out, "--panel", "nothing"],
@@ -90,4 +99,5 @@ fn refused() {
         assert_eq!(code, 2, "{usage:?}: {err}");
         assert_eq!(err.lines().count(), 1, "{err}");
     }
+    assert_eq!(std::fs::read(&kept).unwrap(), b"kept");
 }

@@ -1,5 +1,6 @@
 //! The status line: what the picture cost, how far it is, by what it was made.
 
+use burnish_core::lighting::classical;
 use burnish_core::scene::Scene;
 use eframe::egui::{self, Align, Layout, RichText};
 
@@ -78,7 +79,8 @@ fn triangles(scene: &Scene) -> String {
 
 /// What computes each part of the light.
 fn filled_in(session: &Session) -> String {
-    let method = &session.document().lighting.method;
+    // Whatever the document names: a notice says so where it is another.
+    let method = classical::ID;
     let lamps = if session.scene().lights.is_empty() { "no lamps" } else { "lamps: shadow maps" };
     format!("{method}; environment: classical; {lamps}; indirect: none")
 }

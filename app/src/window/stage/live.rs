@@ -117,7 +117,8 @@ impl Live {
         }
     }
 
-    fn shown(&self, message: Option<String>, lost: bool) -> Shown {
+    fn shown(&mut self, message: Option<String>, lost: bool) -> Shown {
+        self.status.message.clone_from(&message);
         Shown {
             texture: self.texture.as_ref().filter(|_| self.condition == Condition::Sound).map(|(_, id)| *id),
             settled: message.is_some() || self.status.drawn.settled,

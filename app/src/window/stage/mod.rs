@@ -56,6 +56,8 @@ pub struct Status {
     pub adapter: String,
     /// It is a software rasterizer.
     pub software: bool,
+    /// Why there is no picture, or an old one, as of the last frame.
+    pub message: Option<String>,
     /// Nothing is timed, so that the window looks the same each time: for snapshots.
     pub fixed_clock: bool,
 }

@@ -22,6 +22,9 @@ use crate::surface::layered;
 pub use evaluate::{Lobes, Maps, OVERLAP, environment, footprint, prefilter};
 pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 
+/// Id of the method, as documents name it.
+pub const ID: &str = "classical";
+
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
     name: "classical",

@@ -1,6 +1,6 @@
 //! What a preset must satisfy.
 
-use super::{Preset, PresetError};
+use super::{MAX_ID, Preset, PresetError};
 
 /// The `format` of a preset.
 pub const FORMAT: &str = "burnish-metal";
@@ -24,7 +24,7 @@ impl Preset {
             return fault("version", format!("is {}", self.version), "this program reads version 1");
         }
         let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
-        if self.id.is_empty() || self.id.len() > 64 || self.id.starts_with('.') || !self.id.chars().all(allowed) {
+        if self.id.is_empty() || self.id.len() > MAX_ID || self.id.starts_with('.') || !self.id.chars().all(allowed) {
             let remedy = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
             return fault("id", format!("is `{}`", self.id), remedy);
         }

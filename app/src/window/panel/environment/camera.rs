@@ -1,11 +1,11 @@
 //! The lens, where the camera stands, and how the mouse moves it.
 
-use burnish_core::document::CameraEntry;
+use burnish_core::document::{CameraEntry, VIEW_LABEL};
 use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use eframe::egui;
 
 use super::{number, row_ui};
-use crate::window::panel::viewport::{MOVE, summary};
+use crate::window::panel::viewport::summary;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::session::Session;
 use crate::window::widget::{Change, param_ui};
@@ -13,6 +13,8 @@ use crate::window::widget::{Change, param_ui};
 /// Vertical angle of a new view, degrees, and its focal length: 12 mm / tan(17.5 deg).
 const YFOV_DEG: f64 = 35.0;
 const FOCAL_MM: f64 = 38.059;
+/// Largest coordinate of the target that can be typed, meters: a field without bounds takes `inf`.
+const FARTHEST_M: f64 = 1e9;
 
 const FOCAL_LENGTH: ParamSpec = ParamSpec {
     key: "focal-length",
@@ -82,13 +84,13 @@ pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
         (&ORTHOGRAPHIC, ParamValue::Toggle(camera.orthographic), |c, v| c.orthographic = v == ParamValue::Toggle(true)),
     ];
     for (spec, value, set) in rows {
-        row_ui(ui, session, (spec, MOVE), value, |document, value| set(&mut document.view.camera, value));
+        row_ui(ui, session, (spec, VIEW_LABEL), value, |document, value| set(&mut document.view.camera, value));
     }
     // There is no natural distance: the one that is there counts as unchanged.
     let ParamKind::Number { min, max, .. } = DISTANCE.kind else { return };
     let kind = ParamKind::Number { min, max, default: camera.distance };
     let distance = ParamSpec { kind, ..DISTANCE };
-    row_ui(ui, session, (&distance, MOVE), ParamValue::Number(camera.distance), |document, value| {
+    row_ui(ui, session, (&distance, VIEW_LABEL), ParamValue::Number(camera.distance), |document, value| {
         document.view.camera.distance = number(value);
     });
     target_ui(ui, session, &camera);
@@ -102,6 +104,8 @@ fn target_ui(ui: &mut egui::Ui, session: &mut Session, camera: &CameraEntry) {
         let mut changed = false;
         for (value, axis) in target.iter_mut().zip(["X", "Y", "Z"]) {
             let field = egui::DragValue::new(value)
+                .range(-FARTHEST_M..=FARTHEST_M)
+                .clamp_existing_to_range(false)
                 .speed(0.005 * camera.distance.clamp(1e-3, 1e6))
                 .max_decimals(3)
                 .prefix(format!("{axis} "))
@@ -111,7 +115,7 @@ fn target_ui(ui: &mut egui::Ui, session: &mut Session, camera: &CameraEntry) {
             changed |= field.changed();
         }
         if changed {
-            session.edit(MOVE, "", |document| document.view.camera.target = target);
+            session.edit(VIEW_LABEL, "", |document| document.view.camera.target = target);
         }
     });
 }

@@ -1,12 +1,11 @@
 //! The HDRI and how its light is shown.
 
-use std::path::PathBuf;
-
 use burnish_core::color::tone::ToneMap;
 use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use eframe::egui;
 
 use super::{Context, number, row_ui};
+use crate::window::files::typed_path;
 use crate::window::request::{Purpose, Request};
 use crate::window::session::Session;
 use crate::window::widget::name_input;
@@ -95,7 +94,7 @@ impl LightSection {
             let named = !self.path.trim().is_empty();
             let button = ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("Load the HDRI at this path.");
             if named && (button.clicked() || entered) {
-                context.requests.push(Request::LoadEnvironment(PathBuf::from(self.path.trim())));
+                context.requests.push(Request::LoadEnvironment(typed_path(&self.path)));
             }
         });
     }

@@ -9,8 +9,7 @@ use crate::window::session::Session;
 
 /// A row for every setting that the method declares.
 pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
-    let method = session.document().lighting.method.clone();
-    ui.label(method).on_hover_text("Environment maps prefiltered or sampled per pixel, shadow-mapped lamps.");
+    ui.label(classical::ID).on_hover_text("Environment maps prefiltered or sampled per pixel, shadow-mapped lamps.");
     let settings: Settings = session.document().lighting.settings();
     let rows: Vec<_> = settings.iter().collect();
     for (spec, value) in rows {

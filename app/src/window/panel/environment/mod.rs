@@ -52,7 +52,7 @@ fn row_ui(
         None => {}
     }
     // A run of camera moves is one step, whatever moves it.
-    if edit.ended && label != super::viewport::MOVE {
+    if edit.ended && label != burnish_core::document::VIEW_LABEL {
         session.seal();
     }
 }

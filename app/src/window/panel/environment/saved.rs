@@ -1,11 +1,10 @@
 //! Saved points of view, and those of the model.
 
-use burnish_core::document::CameraEntry;
+use burnish_core::document::{CameraEntry, VIEW_LABEL};
 use eframe::egui;
 
 use super::Context;
 use crate::window::commands::Command;
-use crate::window::panel::viewport::MOVE;
 use crate::window::request::Request;
 use crate::window::session::Session;
 use crate::window::widget::name_input;
@@ -13,8 +12,16 @@ use crate::window::widget::name_input;
 /// The list of cameras.
 #[derive(Default)]
 pub struct SavedSection {
-    /// Place and new name of the camera that is being renamed.
-    renamed: Option<(usize, String)>,
+    /// The camera that is being renamed.
+    renamed: Option<Renaming>,
+}
+
+/// A camera whose name is being typed.
+struct Renaming {
+    place: usize,
+    name: String,
+    /// The field was not shown yet: it gets the keyboard once.
+    fresh: bool,
 }
 
 /// What was clicked in the list.
@@ -46,14 +53,15 @@ impl SavedSection {
     }
 
     fn camera_ui(&mut self, ui: &mut egui::Ui, place: usize, camera: &CameraEntry, action: &mut Option<Action>) {
-        if let Some((_, name)) = self.renamed.as_mut().filter(|(renamed, _)| *renamed == place) {
-            let field = ui.add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY));
-            name_input(&field, "Name of the camera", name);
-            field.request_focus();
-            if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        if let Some(renaming) = self.renamed.as_mut().filter(|renaming| renaming.place == place) {
+            let field = ui.add(egui::TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
+            name_input(&field, "Name of the camera", &renaming.name);
+            if std::mem::take(&mut renaming.fresh) {
+                field.request_focus();
+            } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
                 self.renamed = None;
-            } else if field.lost_focus() || field.clicked_elsewhere() {
-                *action = Some(Action::Rename(place, name.clone()));
+            } else if field.lost_focus() || !field.has_focus() {
+                *action = Some(Action::Rename(place, renaming.name.clone()));
             }
             return;
         }
@@ -80,7 +88,7 @@ impl SavedSection {
 
     fn act(&mut self, action: Action, session: &mut Session) {
         match action {
-            Action::Recall(camera) => session.edit(MOVE, "", |document| {
+            Action::Recall(camera) => session.edit(VIEW_LABEL, "", |document| {
                 document.view.camera = CameraEntry { name: String::new(), ..camera };
             }),
             Action::Replace(place) => session.edit("Replace camera", "", |document| {
@@ -91,7 +99,7 @@ impl SavedSection {
             }),
             Action::StartRename(place) => {
                 let name = session.document().cameras.get(place).map(|camera| camera.name.clone());
-                self.renamed = name.map(|name| (place, name));
+                self.renamed = name.map(|name| Renaming { place, name, fresh: true });
             }
             Action::Rename(place, name) => {
                 self.renamed = None;
@@ -139,7 +147,7 @@ mod tests {
             document.save_camera("Camera", &camera);
         });
         let saved = session.document().cameras[start].clone();
-        session.edit(MOVE, "", |document| document.view.camera.orbit(30.0, 0.0));
+        session.edit(VIEW_LABEL, "", |document| document.view.camera.orbit(30.0, 0.0));
         section.act(Action::Recall(saved.clone()), &mut session);
         assert_eq!(session.document().view.camera.yaw_deg, saved.yaw_deg);
         assert_eq!(session.document().view.camera.name, "");

@@ -66,16 +66,7 @@ impl Header {
         ui.horizontal_wrapped(|ui| {
             command_ui(ui, context, Command::NewMaterial, "New", "Add a material");
             command_ui(ui, context, Command::DuplicateMaterial, "Duplicate", "Copy the material under a new name");
-            let allowed = context.session.document().can_remove_material(index);
-            let button = ui.add_enabled(allowed, Button::new("Delete").small());
-            let button = button.on_hover_text("Remove the material");
-            let button = button.on_disabled_hover_text("An object has it, or it is the model's own");
-            name_widget(&button, "Delete material");
-            if button.clicked() {
-                let name = name_of(context, index);
-                context.session.edit("Delete material", &name, |document| _ = document.remove_material(index));
-                context.session.seal();
-            }
+            command_ui(ui, context, Command::RemoveMaterial, "Delete", "Delete a material that no object has");
             command_ui(ui, context, Command::CopyMaterial, "Copy", "Remember the material");
             command_ui(ui, context, Command::PasteMaterial, "Paste", "Make it like the remembered one");
             command_ui(ui, context, Command::ApplyToSelected, "Apply to selected", "Give it to the selected objects");
@@ -116,11 +107,16 @@ impl Header {
 }
 
 fn command_ui(ui: &mut egui::Ui, context: &mut Context<'_>, command: Command, text: &str, hover: &str) {
-    let enabled = command.is_enabled(context.session);
-    let button = ui.add_enabled(enabled, Button::new(text).small()).on_hover_text(hover);
+    let obstacle = command.obstacle(context.session);
+    let button = ui.add_enabled(obstacle.is_none(), Button::new(text).small()).on_hover_text(hover);
+    let button = button.on_disabled_hover_text(obstacle.unwrap_or_default());
     if matches!(
         command,
-        Command::NewMaterial | Command::DuplicateMaterial | Command::CopyMaterial | Command::PasteMaterial
+        Command::NewMaterial
+            | Command::DuplicateMaterial
+            | Command::RemoveMaterial
+            | Command::CopyMaterial
+            | Command::PasteMaterial
     ) {
         name_widget(&button, &format!("{text} material"));
     }
@@ -146,9 +142,9 @@ fn saved(context: &Context<'_>, index: usize, draft: &Draft) -> Option<SavedMate
     let document = context.session.document();
     let used = document.materials.get(index)?.preset.as_ref();
     let metal = used.map(|used| {
-        let built_in = preset::library().iter().any(|known| known.id == used.id);
         let own = document.presets.iter().find(|metal| metal.id == used.id);
-        let constants = own.filter(|_| !built_in).map(|metal| Box::new(metal.as_ref().clone()));
+        let own = own.filter(|metal| !preset::library().iter().any(|known| *known == ***metal));
+        let constants = own.map(|metal| Box::new(metal.as_ref().clone()));
         SavedMetal { id: used.id.clone(), fresnel: used.fresnel.clone(), constants }
     });
     let tags = draft.tags.split(',').map(str::trim).filter(|tag| !tag.is_empty()).map(Into::into).collect();

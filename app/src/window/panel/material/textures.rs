@@ -1,13 +1,12 @@
 //! The textures of a material: what is in each slot, and how to change it.
 
-use std::path::PathBuf;
-
 use burnish_core::document::{MaterialEntry, TextureChoice, role_key};
 use burnish_core::material::{Material, TextureRole};
 use burnish_core::scene::Image;
 use eframe::egui::{self, Button};
 
 use super::Context;
+use crate::window::files::typed_path;
 use crate::window::request::{Purpose, Request};
 use crate::window::widget::{choice_ui, name_input, name_ui, name_widget, reset_ui};
 
@@ -99,7 +98,7 @@ impl Textures {
             name_input(&field, "Path of a texture", &self.path);
             let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if entered && !self.path.trim().is_empty() {
-                let path = PathBuf::from(self.path.trim());
+                let path = typed_path(&self.path);
                 context.requests.push(Request::LoadTexture { material, role, path });
                 self.path.clear();
             }

@@ -7,7 +7,6 @@ mod tile;
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use burnish_core::document::Assigned;
@@ -19,6 +18,7 @@ pub use item::assign;
 use item::{Item, list};
 
 use super::{Context, DraggedPreset};
+use crate::window::files::typed_path;
 use crate::window::request::{Purpose, Request};
 use crate::window::widget::{choice_ui, name_input};
 
@@ -165,7 +165,7 @@ impl PresetsPanel {
             name_input(&field, "Path of a preset", &path);
             let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if entered && !path.trim().is_empty() {
-                context.requests.push(Request::ImportPreset(PathBuf::from(path.trim())));
+                context.requests.push(Request::ImportPreset(typed_path(&path)));
                 path.clear();
             }
         });

@@ -1,13 +1,10 @@
 //! Commands that move the camera.
 
-use burnish_core::document::CameraEntry;
+use burnish_core::document::{CameraEntry, VIEW_LABEL};
 use burnish_core::scene::{Bounds, Instance};
 
 use crate::window::commands::Command;
 use crate::window::session::Session;
-
-/// Label of every step that moves the camera: a run of them is undone as one.
-pub const MOVE: &str = "Move camera";
 
 /// Does a command about the camera, for a picture of `aspect` (width by height).
 pub fn command(command: Command, session: &mut Session, aspect: f32) {
@@ -28,7 +25,7 @@ pub fn command(command: Command, session: &mut Session, aspect: f32) {
 
 /// Changes the camera as a part of the running movement.
 pub fn move_camera(session: &mut Session, change: impl FnOnce(&mut CameraEntry)) {
-    session.edit(MOVE, "", |document| change(&mut document.view.camera));
+    session.edit(VIEW_LABEL, "", |document| change(&mut document.view.camera));
 }
 
 fn look(session: &mut Session, yaw_deg: f64, pitch_deg: f64) {
@@ -96,7 +93,7 @@ mod tests {
             let looks = camera.world_from_view.transform_vector3(glam::Vec3::NEG_Z);
             assert!(looks.distance(forward) < 1e-5, "{view:?} looks along {looks}");
         }
-        assert_eq!(session.undo().as_deref(), Some(MOVE));
+        assert_eq!(session.undo().as_deref(), Some(VIEW_LABEL));
         assert_eq!(session.document().view.camera, before);
     }
 

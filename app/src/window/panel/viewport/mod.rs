@@ -19,7 +19,6 @@ use crate::window::session::Session;
 use crate::window::stage::Shown;
 use navigation::{BUTTONS, Feel, Gesture, Wheel};
 
-pub use cameras::MOVE;
 pub use navigation::summary;
 
 /// Seconds after a change during which another is expected: only quick frames are drawn.

@@ -1,4 +1,4 @@
-use burnish_core::document::{self, Document};
+use burnish_core::document::{self, Document, VIEW_LABEL};
 use eframe::egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -90,7 +90,7 @@ fn a_left_drag_turns_the_camera_and_undo_brings_it_back() {
     assert!(after.view.camera.pitch_deg > before.view.camera.pitch_deg);
     assert_eq!(after.view.camera.distance, before.view.camera.distance);
     assert_eq!(bench.state().session.history().past().len(), 1, "a drag is one step");
-    assert_eq!(bench.state_mut().session.undo().as_deref(), Some(MOVE));
+    assert_eq!(bench.state_mut().session.undo().as_deref(), Some(VIEW_LABEL));
     assert_eq!(document(&bench), before);
 }
 

@@ -31,9 +31,14 @@ impl eframe::App for App {
         if let Some(losses) = self.workbench.stage().wants_restart() {
             // The window is drawn with the device that is gone: eframe would panic in its next upload. All that must
             // last is in the recovery file.
-            match restart(&losses) {
-                Ok(()) => process::exit(0),
-                Err(reason) => _ = self.end.set(reason),
+            if !self.workbench.recovery_kept() {
+                let reason = "the graphics device was lost, and the recovery file could not be written";
+                _ = self.end.set(reason.into());
+            } else {
+                match restart(&losses) {
+                    Ok(()) => process::exit(0),
+                    Err(reason) => _ = self.end.set(reason),
+                }
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }

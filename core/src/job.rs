@@ -57,6 +57,8 @@ impl<T: Send + 'static> Job<T> {
         std::thread::spawn(move || {
             // Wakes also when the work panics.
             let _wake = Wake(Some(wake));
+            // Dropped before the wake, also by a panic: whoever is woken sees the end of the job.
+            let sender = sender;
             // Nobody listens after a cancel.
             let _ = sender.send(work(&seen));
         });

@@ -93,6 +93,12 @@ pub fn readme_examples_run() {
         for arg in args.iter_mut().filter(|arg| is_file(arg)) {
             *arg = text(&folder.join(&*arg)).into();
         }
+        for arg in args.iter_mut().filter(|arg| arg.ends_with(".burnish")) {
+            *arg = text(&repository().join(&*arg)).into();
+        }
+        if args[0] == "snapshot" {
+            args.extend(["--size".into(), "320x200".into()]);
+        }
         if args[0] == "render" {
             match args.iter().position(|arg| arg == "--size") {
                 Some(option) => args[option + 1] = "48x27".into(),
@@ -108,7 +114,7 @@ pub fn readme_examples_run() {
         run += 1;
     }
     assert!(run >= 8, "only {run} examples were found");
-    for picture in ["docs/images/workbench.png", "copper.png", "workbench.exr", "brass.png", "diff.png"] {
+    for picture in ["docs/images/workbench.png", "docs/images/window.png", "docs/images/light.png", "copper.png", "workbench.exr", "brass.png", "diff.png"] {
         assert!(folder.join(picture).is_file(), "{picture}");
     }
 }

@@ -114,7 +114,15 @@ pub fn readme_examples_run() {
         run += 1;
     }
     assert!(run >= 8, "only {run} examples were found");
-    for picture in ["docs/images/workbench.png", "docs/images/window.png", "docs/images/light.png", "copper.png", "workbench.exr", "brass.png", "diff.png"] {
+    for picture in [
+        "docs/images/workbench.png",
+        "docs/images/window.png",
+        "docs/images/light.png",
+        "copper.png",
+        "workbench.exr",
+        "brass.png",
+        "diff.png",
+    ] {
         assert!(folder.join(picture).is_file(), "{picture}");
     }
 }

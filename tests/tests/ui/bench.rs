@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use burnish::window::{Options, Session, Stage, Workbench};
 use burnish_tests::scratch_folder;
-use eframe::egui::{self, Key, Modifiers, Role};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Role};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, HarnessBuilder};
 
@@ -126,6 +126,23 @@ impl Bench {
     #[track_caller]
     pub fn slide(&mut self, label: &str, value: f64) {
         self.window.get_by_role_and_label(Role::Slider, label).set_value_accesskit(value);
+        self.window.run_steps(3);
+    }
+
+    /// Drags with the left button, in two moves.
+    pub fn drag(&mut self, from: Pos2, to: Pos2) {
+        let press = |pressed, pos| {
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            egui::Event::PointerButton { pos, button, pressed, modifiers }
+        };
+        self.window.hover_at(from);
+        self.window.event(press(true, from));
+        self.window.run_steps(1);
+        for share in [0.5, 1.0] {
+            self.window.hover_at(from.lerp(to, share));
+            self.window.run_steps(1);
+        }
+        self.window.event(press(false, to));
         self.window.run_steps(3);
     }
 

@@ -7,7 +7,7 @@ use burnish::window::{Command, Pane, Request};
 use burnish_core::document::Document;
 use burnish_core::material::Reflectance;
 use burnish_tests::trial;
-use eframe::egui::{Key, Modifiers, PointerButton, Role, vec2};
+use eframe::egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use libtest_mimic::Trial;
 
@@ -70,6 +70,11 @@ fn gold() {
     bench.until_shown("Gold");
     bench.click("Gold");
     assert!(is_metal(&bench, 0, "Au") && !is_metal(&bench, 1, "Au"));
+    let rail = bench.window.get_by_role_and_label(Role::Slider, "Roughness").rect();
+    bench.drag(rail.lerp_inside(vec2(0.9, 0.5)), rail.lerp_inside(vec2(0.4, 0.5)));
+    let dragged = bench.session().scene().materials[0].roughness;
+    assert!((0.25..0.5).contains(&dragged), "{dragged}");
+    assert_eq!(labels(&bench).iter().filter(|label| *label == "Roughness").count(), 1, "a drag is one step");
     bench.slide("Roughness", 0.35);
     bench.slide("Anisotropy", 0.5);
     let scene = bench.session().scene().clone();
@@ -78,21 +83,7 @@ fn gold() {
     let before = bench.session().document().view.camera.clone();
     let viewport = bench.window.get_by(|node| node.label().is_some_and(|label| label.starts_with("Viewport:")));
     let middle = viewport.rect().center();
-    let press = |pressed, pos| eframe::egui::Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
-    bench.window.hover_at(middle);
-    bench.window.event(press(true, middle));
-    bench.window.run_steps(1);
-    for _ in 0..2 {
-        bench.window.hover_at(middle + vec2(120.0, 30.0));
-        bench.window.run_steps(1);
-    }
-    bench.window.event(press(false, middle + vec2(120.0, 30.0)));
-    bench.window.run_steps(3);
+    bench.drag(middle, middle + vec2(120.0, 30.0));
     assert_ne!(bench.session().document().view.camera.yaw_deg, before.yaw_deg, "it turned");
 
     bench.menu("Material", "Apply to all objects");
@@ -302,6 +293,12 @@ fn layout() {
     bench.keys(Modifiers::NONE, Key::Escape);
     let stored = bench.workbench().preferences().layout.clone();
     assert!(stored.is_some());
+    bench.until("it is written", |workbench| !workbench.is_busy());
+    *bench.window.state_mut() = None;
+    bench.window.run_steps(1);
+    bench.until("it is open again", |workbench| !workbench.is_busy());
+    assert_eq!(bench.workbench().preferences().layout, stored);
+    assert!(bench.window.query_by_label("Reflectance").is_none(), "the panel is still hidden");
     ask(&mut bench, Command::ResetLayout);
     assert_eq!(bench.workbench().preferences().layout, None);
 }

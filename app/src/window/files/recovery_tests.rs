@@ -39,7 +39,7 @@ fn kill(recovery: Recovery) {
 fn what_a_killed_program_leaves_comes_back_with_its_path() {
     let folder = Scratch::new("killed");
     let recovery = Recovery::new(folder.0.clone());
-    let kept = snapshot("/models/chair.glb", Some("/work/chair.burnish"));
+    let kept = snapshot("/models/chair.glb", Some("/documents/chair.burnish"));
     recovery.write_now(&kept).unwrap();
     assert_eq!(scan(&folder.0, false).in_use, 1, "a running program is not disturbed");
     kill(recovery);

@@ -45,12 +45,12 @@ mod tests {
 
     #[test]
     fn a_path_goes_to_disk_and_back() {
-        let folder = Path::new("/home/a/work");
+        let folder = Path::new("/home/a/desk");
         for (path, stored) in [
-            ("/home/a/work/m/x.glb", "m/x.glb"),
+            ("/home/a/desk/m/x.glb", "m/x.glb"),
             ("/home/a/x.glb", "../x.glb"),
             ("/data/x.glb", "../../../data/x.glb"),
-            ("/home/a/workshop/x.glb", "../workshop/x.glb"),
+            ("/home/a/desktop/x.glb", "../desktop/x.glb"),
         ] {
             assert_eq!(relative(path, folder), stored);
             assert_eq!(absolute(stored, folder), path);

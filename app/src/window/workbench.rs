@@ -166,6 +166,7 @@ impl Workbench {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
+        let revision = self.session.revision;
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
         let Workbench {
@@ -219,6 +220,10 @@ impl Workbench {
         }
         self.toasts.ui(ui.ctx(), middle);
         self.keep_layout(ui.ctx());
+        // The picture was drawn before the panel that changed it.
+        if self.session.revision != revision {
+            ui.ctx().request_repaint();
+        }
     }
 
     /// What lies over the panels: palette and shortcut page.

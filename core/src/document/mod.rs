@@ -28,7 +28,9 @@ pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
-pub use open::{Missing, MissingKind, Opened, Sources, is_document, load_image, open, placeholder, reload};
+pub use open::{
+    Missing, MissingKind, Opened, Sources, is_document, load_image, load_map, load_model, open, placeholder, reload,
+};
 pub use paths::{absolute, relative};
 pub use resolve::{Curves, Resolved, resolve};
 

@@ -117,7 +117,8 @@ pub fn load_image(path: &str) -> Result<Arc<Image>, String> {
     import::load_image(Path::new(path)).map(Arc::new).map_err(|e| e.to_string())
 }
 
-fn load_model(path: &str) -> Result<(Arc<Scene>, Vec<String>), String> {
+/// Reads a model or makes a scene of the gallery, with notices; the error is in words.
+pub fn load_model(path: &str) -> Result<(Arc<Scene>, Vec<String>), String> {
     if path.starts_with("gallery:") {
         return Ok((Arc::new(gallery::open(path).map_err(|e| e.to_string())?), Vec::new()));
     }
@@ -125,7 +126,8 @@ fn load_model(path: &str) -> Result<(Arc<Scene>, Vec<String>), String> {
     Ok((Arc::new(imported.scene), imported.notices.iter().map(ToString::to_string).collect()))
 }
 
-fn load_map(path: &str) -> Result<(Arc<Environment>, Vec<String>), String> {
+/// Reads an HDRI, with notices; the error is in words.
+pub fn load_map(path: &str) -> Result<(Arc<Environment>, Vec<String>), String> {
     let (map, notices) = import::load_environment(Path::new(path)).map_err(|e| e.to_string())?;
     Ok((Arc::new(map), notices.iter().map(ToString::to_string).collect()))
 }

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burnish_core::document::{self, Document, Missing, MissingKind, Sources, TextureChoice};
-use burnish_core::import::{self, ImportOptions};
 use burnish_core::job::{Job, Outcome};
 use burnish_core::material::TextureRole;
 use burnish_core::scene::{Environment, Image, Scene};
@@ -183,7 +182,7 @@ pub fn environment(path: &Path) -> Load {
     let known = known_path(path);
     Load::new(format!("Loading {}", name_of(&known)), false, move || {
         let seen = stamps([known.clone()]);
-        let (map, notices) = read_map(&known)?;
+        let (map, notices) = document::load_map(&known)?;
         Ok(Box::new(move |landing| {
             landing.note(&known, &notices);
             landing.watch.add(seen);
@@ -298,13 +297,11 @@ impl Read {
     fn file(kind: MissingKind, path: &str) -> Result<Read, String> {
         let (content, notices) = match kind {
             MissingKind::Model => {
-                let imported = import::load_scene(Path::new(path), &ImportOptions::default());
-                let imported = imported.map_err(|e| e.to_string())?;
-                let notices = imported.notices.iter().map(ToString::to_string).collect();
-                (Content::Model(Arc::new(imported.scene)), notices)
+                let (model, notices) = document::load_model(path)?;
+                (Content::Model(model), notices)
             }
             MissingKind::Environment => {
-                let (map, notices) = read_map(path)?;
+                let (map, notices) = document::load_map(path)?;
                 (Content::Map(map), notices)
             }
             MissingKind::Texture => (Content::Image(document::load_image(path)?), Vec::new()),
@@ -319,11 +316,6 @@ impl Read {
             Content::Image(image) => _ = sources.images.insert(path.into(), image.clone()),
         }
     }
-}
-
-fn read_map(path: &str) -> Result<(Arc<Environment>, Vec<String>), String> {
-    let (map, notices) = import::load_environment(Path::new(path)).map_err(|e| e.to_string())?;
-    Ok((Arc::new(map), notices.iter().map(ToString::to_string).collect()))
 }
 
 /// Every file that a document refers to.

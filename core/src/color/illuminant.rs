@@ -1,6 +1,10 @@
 //! Standard illuminants.
 
-use crate::color::observer::{CMF, COUNT};
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+use crate::color::observer::{CMF, COUNT, wavelength_nm};
 
 /// Relative power of D65 at 380, 385 ... 780 nm, 100 at 560 nm (CIE 15:2018).
 pub const D65: [f64; COUNT] = [
@@ -16,11 +20,27 @@ pub const D65: [f64; COUNT] = [
 /// Equal energy at every wavelength.
 pub const E: [f64; COUNT] = [100.0; COUNT];
 
+/// Incandescent light on the grid of [`CMF`], 100 at 560 nm: Planck's law at 2848 K with the second radiation constant
+/// 1.435e7 nm K, which defines it (CIE 15:2018; today's constant would say 2856 K).
+pub static A: LazyLock<[f64; COUNT]> = LazyLock::new(|| {
+    let quantum = |nm: f64| (1.435e7 / (2848.0 * nm)).exp_m1();
+    std::array::from_fn(|i| {
+        let nm = wavelength_nm(i);
+        100.0 * (560.0 / nm).powi(5) * quantum(560.0) / quantum(nm)
+    })
+});
+
+/// XYZ of the perfect reflector under an illuminant, Y = 1.
+pub fn xyz(power: &[f64; COUNT]) -> DVec3 {
+    let sum: DVec3 = power.iter().zip(&CMF).map(|(&power, &cmf)| power * DVec3::from_array(cmf)).sum();
+    sum / sum.y
+}
+
 /// Chromaticity `(x, y)` of an illuminant for the 2-degree observer.
 pub fn chromaticity(power: &[f64; COUNT]) -> (f64, f64) {
-    let sum = |c: usize| CMF.iter().zip(power).map(|(row, p)| row[c] * p).sum::<f64>();
-    let total = sum(0) + sum(1) + sum(2);
-    (sum(0) / total, sum(1) / total)
+    let xyz = xyz(power);
+    let total = xyz.element_sum();
+    (xyz.x / total, xyz.y / total)
 }
 
 #[cfg(test)]
@@ -32,6 +52,16 @@ mod tests {
         let (x, y) = chromaticity(&D65);
         // Published with five decimals.
         assert!((x - 0.31272).abs() < 5e-6 && (y - 0.32903).abs() < 5e-6, "{x} {y}");
+    }
+
+    #[test]
+    fn illuminant_a_has_the_published_power_and_chromaticity() {
+        // CIE 15:2018: 9.80 at 380 nm, 100 at 560 nm, 227.0 at 750 nm.
+        let at = |nm: usize| A[(nm - 380) / 5];
+        assert!((at(380) - 9.7951).abs() < 5e-5 && at(560) == 100.0 && (at(750) - 227.0).abs() < 0.05, "{}", at(380));
+        let (x, y) = chromaticity(&A);
+        // Published as 0.44758, 0.40745, from 1 nm steps.
+        assert!((x - 0.44758).abs() < 2e-5 && (y - 0.40745).abs() < 2e-5, "{x} {y}");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::color::illuminant::D65;
+use crate::color::adaptation::bradford;
+use crate::color::illuminant::{self, D65};
 use crate::color::observer::{CMF, COUNT, wavelength_nm};
 
 /// Chromaticities of the Rec.709 primaries red, green, blue (ITU-R BT.709-6).
@@ -23,17 +24,26 @@ static WEIGHTS: LazyLock<[DVec3; COUNT]> = LazyLock::new(|| {
 
 /// XYZ of the perfect reflector under D65, Y = 1, by the same sum as [`integrate`].
 pub fn white_xyz() -> DVec3 {
-    let sum: DVec3 = D65.iter().zip(&CMF).map(|(&power, &cmf)| power * DVec3::from_array(cmf)).sum();
-    sum / sum.y
+    illuminant::xyz(&D65)
 }
 
 /// XYZ from linear Rec.709. Columns are the primaries, scaled so that they add up to [`white_xyz`]: a textbook matrix,
 /// made for a rounded white, would give the perfect reflector 0.99988, 1.00004, 0.99997.
 pub fn xyz_from_rgb() -> DMat3 {
-    let [r, g, b] = PRIMARIES.map(|(x, y)| DVec3::new(x / y, 1.0, (1.0 - x - y) / y));
+    xyz_from_primaries(PRIMARIES, white_xyz())
+}
+
+/// XYZ from linear RGB of the primaries with chromaticities `(x, y)`, scaled so that (1, 1, 1) is `white`.
+pub(super) fn xyz_from_primaries(primaries: [(f64, f64); 3], white: DVec3) -> DMat3 {
+    let [r, g, b] = primaries.map(|(x, y)| xyz_from_xy(x, y));
     let unscaled = DMat3::from_cols(r, g, b);
-    let scale = unscaled.inverse() * white_xyz();
+    let scale = unscaled.inverse() * white;
     unscaled * DMat3::from_diagonal(scale)
+}
+
+/// XYZ of a chromaticity, Y = 1.
+pub(super) fn xyz_from_xy(x: f64, y: f64) -> DVec3 {
+    DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
 /// Linear Rec.709 from XYZ, the inverse of [`xyz_from_rgb`].
@@ -45,6 +55,16 @@ pub fn rgb_from_xyz() -> DMat3 {
 /// reflectance lies outside [0, 1].
 pub fn integrate(reflectance: impl Fn(f64) -> f64) -> DVec3 {
     WEIGHTS.iter().enumerate().map(|(i, &weight)| weight * reflectance(wavelength_nm(i))).sum()
+}
+
+/// Linear Rec.709 of a reflectance under another illuminant, given as relative power on the grid of [`CMF`], adapted to
+/// D65 by Bradford: what an observer sees who is used to that light. White stays (1, 1, 1). Two metals that [`integrate`]
+/// to one colour may differ here.
+pub fn integrate_under(power: &[f64; COUNT], reflectance: impl Fn(f64) -> f64) -> DVec3 {
+    let lit = |i: usize| power[i] * DVec3::from_array(CMF[i]);
+    let sum: DVec3 = (0..COUNT).map(|i| reflectance(wavelength_nm(i)) * lit(i)).sum();
+    let white: f64 = (0..COUNT).map(|i| lit(i).y).sum();
+    rgb_from_xyz() * bradford(illuminant::xyz(power), white_xyz()) * (sum / white)
 }
 
 /// Luminance of linear Rec.709, in the unit of the channels.
@@ -78,6 +98,7 @@ fn unit(v: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::preset;
 
     #[test]
     fn the_perfect_reflector_is_exactly_white() {
@@ -93,6 +114,19 @@ mod tests {
         assert!((grey - DVec3::splat(0.18)).abs().max_element() < 1e-14);
         let red = integrate(|nm| if nm < 600.0 { 0.0 } else { 1.0 });
         assert!(red.x > 5.0 * red.y.abs() && red.y < 0.0, "a spectral edge lies outside of Rec.709: {red}");
+    }
+
+    #[test]
+    fn an_observer_used_to_another_light_sees_grey_as_grey_and_gold_a_little_otherwise() {
+        for power in [&D65, &illuminant::A, &illuminant::E] {
+            let grey = integrate_under(power, |_| 0.18);
+            assert!((grey - 0.18).abs().max_element() < 1e-14, "{grey}");
+        }
+        let gold = preset::find("Au").unwrap();
+        let under = |power| integrate_under(power, |nm| gold.reflectance(nm, 1.0));
+        assert!((under(&D65) - gold.unclamped_f0()).abs().max_element() < 1e-14);
+        let change = under(&illuminant::A) - under(&D65);
+        assert!((0.005..0.1).contains(&change.abs().max_element()), "{change}");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
+use crate::color::adaptation::bradford;
 use crate::import::report::Report;
 
 /// CIE xy chromaticities of the primaries and of white (R = G = B = 1).
@@ -35,7 +36,7 @@ impl Primaries {
             return None;
         }
         let matrix = self.xyz_from_rgb().zip(REC709.xyz_from_rgb()).map(|(xyz_from_rgb, xyz_from_rec709)| {
-            xyz_from_rec709.inverse() * adaptation(self.white, REC709.white) * xyz_from_rgb
+            xyz_from_rec709.inverse() * bradford(xyz(self.white), xyz(REC709.white)) * xyz_from_rgb
         });
         if !matrix.is_some_and(|m| m.is_finite()) {
             report.notice("primaries", "the primaries of the file are not sound; Rec.709 is taken");
@@ -56,14 +57,6 @@ impl Primaries {
 /// XYZ of a chromaticity with Y = 1.
 fn xyz(xy: DVec2) -> DVec3 {
     DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)
-}
-
-/// Bradford chromatic adaptation (Lam 1985), XYZ to XYZ.
-fn adaptation(from: DVec2, to: DVec2) -> DMat3 {
-    let cone_from_xyz =
-        DMat3::from_cols_array(&[0.8951, -0.7502, 0.0389, 0.2664, 1.7135, -0.0685, -0.1614, 0.0367, 1.0296]);
-    let gain = (cone_from_xyz * xyz(to)) / (cone_from_xyz * xyz(from));
-    cone_from_xyz.inverse() * DMat3::from_diagonal(gain) * cone_from_xyz
 }
 
 #[cfg(test)]

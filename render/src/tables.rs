@@ -17,9 +17,8 @@ const SPARE_CURVES: usize = 32;
 #[derive(Clone, Copy, Debug)]
 pub struct Metal {
     pub form: u32,
-    pub f0: Vec3,
-    pub n: Vec3,
-    pub k: Vec3,
+    /// F0 and the coefficients c0 to c3 of the form.
+    pub numbers: [Vec3; 5],
     pub mean: Vec3,
     /// First float of the spectral table.
     pub table: u32,
@@ -88,21 +87,24 @@ impl TableCache {
 impl Metal {
     fn of_base_color(f0: Vec3) -> Metal {
         let fresnel = Fresnel::Rescaled { f0 };
-        Metal { form: fresnel.form(), f0, n: Vec3::ONE, k: Vec3::ZERO, mean: fresnel.mean(), table: 0, albedo_table: 0 }
+        Metal::closed(&fresnel)
+    }
+
+    /// An entry without tables.
+    fn closed(fresnel: &Fresnel) -> Metal {
+        let (form, numbers, mean) = (fresnel.form(), fresnel.coefficients(), fresnel.mean());
+        Metal { form, numbers, mean, table: 0, albedo_table: 0 }
     }
 
     fn new(fresnel: &Arc<Fresnel>, masking: Masking, floats: &mut Vec<f32>, cache: &mut TableCache) -> Metal {
-        let mut metal = Metal { form: fresnel.form(), mean: fresnel.mean(), ..Metal::of_base_color(fresnel.f0()) };
+        let mut metal = Metal::closed(fresnel);
         match &**fresnel {
             Fresnel::Rescaled { .. } | Fresnel::Schlick { .. } => return metal,
-            Fresnel::Conductor { n, k } => {
-                metal.n = *n;
-                metal.k = *k;
-            }
             Fresnel::Spectral { table } => {
                 metal.table = floats.len() as u32;
                 floats.extend(table.iter().flat_map(|c| c.to_array()));
             }
+            _ => {}
         }
         metal.albedo_table = floats.len() as u32;
         floats.extend(cache.mean_table(fresnel, masking).iter());

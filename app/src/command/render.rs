@@ -131,8 +131,7 @@ fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<
     let mut changed = vec![false; scene.materials.len()];
     for MetalChoice { preset, slot } in &args.metal {
         let preset = preset::find(preset).map_err(|e| metal_failure(preset, e))?;
-        let form = settings.text("fresnel").unwrap_or_default();
-        let fresnel = Arc::new(preset.fresnel(&form).map_err(|e| metal_failure(&preset.id, e))?);
+        let fresnel = Arc::new(preset.fresnel(classical::form_choice(settings).form(&preset)));
         let slots = match slot {
             Some(slot) => slot
                 .among("material", scene.materials.iter().map(|m| m.name.as_str()))
@@ -163,7 +162,7 @@ fn metal_failure(preset: &str, error: PresetError) -> Failure {
         PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } => {
             Failure::input(Path::new(preset), error)
         }
-        PresetError::Unknown { .. } | PresetError::Form(_) => Failure::usage(format!("--metal {preset}: {error}")),
+        PresetError::Unknown { .. } => Failure::usage(format!("--metal {preset}: {error}")),
     }
 }
 

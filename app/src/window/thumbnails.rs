@@ -17,6 +17,7 @@ use burnish_core::material::{Material, Reflectance};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Camera, Instance, Scene, gallery};
+use burnish_core::surface::fresnel::Form;
 use burnish_render::pass::environment::downsampled;
 use burnish_render::{Passes, Renderer, View};
 use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
@@ -28,6 +29,8 @@ const SIZE: u32 = 96;
 const FRAMES: u32 = 4;
 /// Part of the new in every hash: raise it when balls shall look different.
 const LOOK: u32 = 1;
+/// What a ball is rendered with: it is looked at, not moved.
+const BALL_FORM: Form = Form::Spectral;
 /// Full vertical angle of the camera: a long lens.
 const YFOV: f32 = 0.35;
 /// Radius of the ball as a part of half the picture; the mask is a little smaller, so that its edge is all ball.
@@ -41,32 +44,29 @@ const QUIET_SECS: f64 = 0.3;
 pub struct Subject {
     values: Values,
     metal: Option<Arc<Preset>>,
-    form: &'static str,
     hash: String,
 }
 
 impl Subject {
     /// Factors over those of the default material, and the metal that replaces its reflectance.
     pub fn new(values: Values, metal: Option<Arc<Preset>>) -> Subject {
-        let form = "spectral";
         let mut hasher = blake3::Hasher::new();
-        hasher.update(format!("ball {LOOK} {SIZE} {form} {values:?}").as_bytes());
+        hasher.update(format!("ball {LOOK} {SIZE} {BALL_FORM} {values:?}").as_bytes());
         if let Some(metal) = &metal {
             for list in [&metal.wavelength_nm, &metal.n, &metal.k] {
                 hasher.update(&(list.len() as u64).to_le_bytes());
                 list.iter().for_each(|number| _ = hasher.update(&number.to_le_bytes()));
             }
         }
-        Subject { values, metal, form, hash: hasher.finalize().to_hex().to_string() }
+        Subject { values, metal, hash: hasher.finalize().to_hex().to_string() }
     }
 
     fn material(&self) -> Material {
         let mut material = Material::default();
         params::apply(&mut material, &self.values);
-        if let Some(metal) = &self.metal
-            && let Ok(fresnel) = metal.fresnel(self.form)
-        {
-            material.reflectance = Reflectance::Preset { id: metal.id.clone(), fresnel: Arc::new(fresnel) };
+        if let Some(metal) = &self.metal {
+            let fresnel = Arc::new(metal.fresnel(BALL_FORM));
+            material.reflectance = Reflectance::Preset { id: metal.id.clone(), fresnel };
         }
         material
     }

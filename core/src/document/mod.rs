@@ -101,7 +101,7 @@ pub struct MaterialEntry {
 pub struct PresetUse {
     /// Id such as `Au`.
     pub id: String,
-    /// Fresnel form, one of [`crate::material::preset::FORMS`]; that of the lighting settings when absent.
+    /// Fresnel form, one of [`FormChoice::IDS`](crate::material::preset::FormChoice::IDS); that of the lighting settings when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fresnel: Option<String>,
     /// Fields that this version does not know.

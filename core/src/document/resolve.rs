@@ -10,7 +10,7 @@ use super::{
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
 use crate::material::params::{self, Values};
-use crate::material::preset::{self, Preset};
+use crate::material::preset::{FormChoice, Preset, Tolerance};
 use crate::material::{Material, Reflectance, Sampler, TextureRef, TextureRole};
 use crate::param::ParamSpec;
 use crate::scene::{Environment, Image, Scene, gallery};
@@ -21,18 +21,17 @@ static STUDIO: LazyLock<Arc<Environment>> = LazyLock::new(|| Arc::new(gallery::s
 
 /// Fresnel curves that were made, so that an edit integrates no spectrum again.
 #[derive(Clone, Debug, Default)]
-pub struct Curves(Vec<(Preset, String, Arc<Fresnel>)>);
+pub struct Curves(Vec<(Preset, FormChoice, Arc<Fresnel>)>);
 
 impl Curves {
-    /// The curve of a metal in a form; an unknown form is the first of [`preset::FORMS`].
-    pub fn get(&mut self, metal: &Preset, form: &str) -> Option<Arc<Fresnel>> {
-        if let Some((_, _, curve)) = self.0.iter().find(|(known, of, _)| of == form && known == metal) {
-            return Some(curve.clone());
+    /// The curve of a metal in a form.
+    pub fn get(&mut self, metal: &Preset, choice: FormChoice) -> Arc<Fresnel> {
+        if let Some((_, _, curve)) = self.0.iter().find(|(known, of, _)| *of == choice && known == metal) {
+            return curve.clone();
         }
-        let curve = metal.fresnel(form).or_else(|_| metal.fresnel(preset::FORMS[0])).ok()?;
-        let curve = Arc::new(curve);
-        self.0.push((metal.clone(), form.into(), curve.clone()));
-        Some(curve)
+        let curve = Arc::new(metal.fresnel(choice.form(metal)));
+        self.0.push((metal.clone(), choice, curve.clone()));
+        curve
     }
 }
 
@@ -64,7 +63,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
 
     let mut images = Images { list: &mut scene.images, by_path: BTreeMap::new(), sources, missing: &mut missing };
     let model_keys = material_keys(&model);
-    let form = document.lighting.settings().text("fresnel").unwrap_or_default();
+    let form = classical::form_choice(&document.lighting.settings());
     let (mut base, mut materials) = (Vec::new(), Vec::new());
     for entry in &document.materials {
         let place = entry.source.as_ref().and_then(|source| model_keys.iter().position(|key| key == source));
@@ -72,7 +71,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         let mut material = Material { name: entry.name.clone(), ..start.clone() };
         params::apply(&mut material, &values(entry, &mut notices));
         set_textures(&mut material, entry, &mut images);
-        set_reflectance(&mut material, entry, document, &form, curves, &mut notices);
+        set_reflectance(&mut material, entry, document, form, curves, &mut notices);
         base.push(start);
         materials.push(material);
     }
@@ -171,13 +170,20 @@ fn set_reflectance(
     material: &mut Material,
     entry: &MaterialEntry,
     document: &Document,
-    form: &str,
+    form: FormChoice,
     curves: &mut Curves,
     notices: &mut Vec<String>,
 ) {
     let Some(used) = &entry.preset else { return };
-    let form = used.fresnel.as_deref().unwrap_or(form);
-    match document.metal(&used.id).and_then(|metal| curves.get(metal, form)) {
+    let form = match used.fresnel.as_deref().map(|id| FormChoice::read(id, Tolerance::default())) {
+        None => form,
+        Some(Ok(own)) => own,
+        Some(Err(error)) => {
+            notices.push(format!("material `{}`: {error}; that of the scene is used", entry.name));
+            form
+        }
+    };
+    match document.metal(&used.id).map(|metal| curves.get(metal, form)) {
         Some(fresnel) => material.reflectance = Reflectance::Preset { id: used.id.clone(), fresnel },
         None => notices.push(format!(
             "material `{}`: there is no metal `{}`; its base colour counts instead, pick another metal",

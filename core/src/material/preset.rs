@@ -4,11 +4,14 @@
 //! here by spectral integration; nothing in a file is already a colour.
 
 mod check;
+mod fits;
 mod library;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
+pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
 pub use library::{find, library};
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3};
@@ -18,10 +21,7 @@ use serde_json::{Map, Value};
 use crate::color::rgb;
 use crate::color::spectrum::interpolate;
 use crate::file::{FileError, read_bounded};
-use crate::surface::fresnel::{Fresnel, TABLE_SIZE, exact};
-
-/// Names of the curves that [`Preset::fresnel`] makes.
-pub const FORMS: [&str; 3] = ["spectral", "rescaled", "schlick"];
+use crate::surface::fresnel::{Form, Fresnel, exact};
 
 /// Longest id, in characters.
 const MAX_ID: usize = 64;
@@ -70,6 +70,9 @@ pub struct Preset {
     pub n: Vec<f64>,
     /// Extinction coefficient at each wavelength, 0 or more (index n + ik).
     pub k: Vec<f64>,
+    /// Numbers and errors of the run-time forms; made anew where they are absent or not of this table.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "fits::lenient")]
+    pub fits: Option<Fits>,
     /// Fields of other versions.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -135,9 +138,6 @@ pub enum PresetError {
         /// Names that come near, or all.
         hint: String,
     },
-    /// No curve of that name.
-    #[error("no Fresnel form `{0}`; there are spectral, rescaled, schlick")]
-    Form(String),
 }
 
 impl Preset {
@@ -176,29 +176,31 @@ impl Preset {
         self.unclamped(1.0)
     }
 
-    /// The reflectance curve for rendering, in [0, 1]: one of [`FORMS`], see [`Fresnel`].
-    ///
-    /// `spectral` and `rescaled` integrate the exact reflectance at each wavelength; `schlick` integrates
-    /// `((n - 1) / (n + 1))^2`. Averaged n and k are never used: they can be further off than any approximation.
-    pub fn fresnel(&self, form: &str) -> Result<Fresnel, PresetError> {
-        match form {
-            "spectral" => {
-                let mut table = Box::new([Vec3::ZERO; TABLE_SIZE]);
-                for (i, entry) in table.iter_mut().enumerate() {
-                    *entry = clamped(self.unclamped(i as f64 / (TABLE_SIZE - 1) as f64));
-                }
-                Ok(Fresnel::Spectral { table })
-            }
-            "rescaled" => Ok(Fresnel::Rescaled { f0: clamped(self.unclamped_f0()) }),
-            "schlick" => {
-                let f0 = |nm: f64| {
-                    let (n, _) = self.index_at(nm);
-                    ((n - 1.0) / (n + 1.0)).powi(2)
-                };
-                Ok(Fresnel::Schlick { f0: clamped(rgb::integrate(f0)) })
-            }
-            other => Err(PresetError::Form(other.into())),
+    /// `((n - 1) / (n + 1))^2` integrated to linear Rec.709: F0 without extinction, not clamped.
+    pub fn schlick_f0(&self) -> DVec3 {
+        rgb::integrate(|nm| {
+            let (n, _) = self.index_at(nm);
+            ((n - 1.0) / (n + 1.0)).powi(2)
+        })
+    }
+
+    /// Numbers and errors of every form: the stored ones if they belong to the table, else made now, which takes about
+    /// a tenth of a second.
+    pub fn fits(&self) -> Cow<'_, Fits> {
+        match &self.fits {
+            Some(fits) if fits.belong_to(self) => Cow::Borrowed(fits),
+            _ => Cow::Owned(Fits::new(self)),
         }
+    }
+
+    /// The reflectance curve for rendering, in [0, 1].
+    ///
+    /// All forms but `sampled-nk` stand for the reflectance integrated over the spectrum. Averaged n and k are never
+    /// used: they can be further off than any approximation.
+    pub fn fresnel(&self, form: Form) -> Fresnel {
+        let stored = self.fits.as_ref().filter(|fits| form != Form::Spectral && fits.belong_to(self));
+        let of_stored = |fits: &Fits| fits::curve(form, fits.f0.into(), &fits.forms.get(&form)?.parameters);
+        stored.and_then(of_stored).unwrap_or_else(|| fits::made(self, form))
     }
 }
 

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::Material;
 use super::params::{self, PARAMS};
-use super::preset::{self, FORMS, Preset};
+use super::preset::{self, FormChoice, Preset};
 use crate::file::{FileError, read_bounded, write_atomic};
 use crate::param::{self, ParamValue};
 
@@ -140,11 +140,11 @@ impl SavedMaterial {
             }
         }
         let Some(metal) = &self.metal else { return Ok(()) };
-        if let Some(form) = metal.fresnel.as_ref().filter(|form| !FORMS.contains(&form.as_str())) {
+        if let Some(form) = metal.fresnel.as_ref().filter(|form| !FormChoice::IDS.contains(&form.as_str())) {
             return fault(
                 "metal.fresnel",
                 format!("is `{form}`"),
-                "use spectral, rescaled or schlick, or leave it out",
+                "use `cheapest`, `spectral` or another form of presets/README.md, or leave it out",
             );
         }
         match &metal.constants {

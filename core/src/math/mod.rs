@@ -2,6 +2,8 @@
 
 pub mod cube;
 pub mod frame;
+pub mod minimax;
+pub mod minimize;
 pub mod oct;
 pub mod quadrature;
 pub mod sampling;

@@ -117,13 +117,18 @@ struct MaterialData {
     fresnel_f0: vec3f,
     // First entry of the spectral table.
     fresnel_table: u32,
-    fresnel_n: vec3f,
+    // Coefficients of the form.
+    fresnel_c0: vec3f,
     // First entry of the split-sum table.
     albedo_table: u32,
-    fresnel_k: vec3f,
+    fresnel_c1: vec3f,
     pad0: u32,
-    fresnel_mean: vec3f,
+    fresnel_c2: vec3f,
     pad1: u32,
+    fresnel_c3: vec3f,
+    pad2: u32,
+    fresnel_mean: vec3f,
+    pad3: u32,
     textures: array<TextureSlot, 11>,
 }
 

@@ -9,6 +9,7 @@ use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::scene::gallery::shape;
 use burnish_core::scene::{Environment, Image, LightKind, Scene, Texels};
+use burnish_core::surface::fresnel::Form;
 use burnish_render::readback::read_texture;
 use burnish_render::{Drawn, Frame, Gpu, Passes, RenderError, Renderer, View, Viewport};
 use burnish_tests::{Need, scenes, trial};
@@ -143,7 +144,7 @@ const CHANGES: &[Change] = &[
     ("presets", |s| {
         for (m, id) in s.materials.iter_mut().zip(["Au", "Cu", "Ag", "Au"]) {
             let metal = preset::find(id).expect("a preset");
-            let fresnel = Arc::new(metal.fresnel("spectral").expect("a form"));
+            let fresnel = Arc::new(metal.fresnel(Form::Spectral));
             m.reflectance = Reflectance::Preset { id: id.into(), fresnel };
         }
     }),

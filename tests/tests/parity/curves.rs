@@ -12,9 +12,9 @@ use glam::Vec3;
 pub const WGSL: &str = include_str!("curves.wgsl");
 
 /// Curves in [`Curves::all`].
-pub const COUNT: usize = 4;
+pub const COUNT: usize = 9;
 /// Floats of the fields of a curve.
-const FIELDS: usize = 16;
+const FIELDS: usize = 22;
 
 /// A curve with what comes with it.
 pub struct Curve {
@@ -43,8 +43,20 @@ static CURVES: LazyLock<Curves> = LazyLock::new(|| {
         let x = i as f32 / (TABLE_SIZE - 1) as f32;
         Vec3::new(1.0 - 0.4 * x, 1.0 - 0.9 * x + 0.3 * x * x, (1.0 - x) * (1.0 - x))
     }));
-    let forms =
-        [Fresnel::rescaled(n, k), Fresnel::schlick(n), Fresnel::Conductor { n, k }, Fresnel::Spectral { table }];
+    // Red above 1 as gold has it; the coefficients are of the size that metals have, of both signs.
+    let f0 = Vec3::new(1.037, 0.73, 0.36);
+    let [a, b, c] = [(0.05, -0.9, 3.1), (0.3, 0.6, 1.2), (-0.2, 2.4, 0.4)].map(Vec3::from);
+    let forms = [
+        Fresnel::rescaled(n, k),
+        Fresnel::schlick(n),
+        Fresnel::Conductor { n, k },
+        Fresnel::Spectral { table },
+        Fresnel::Compensated { f0, a, alpha: Vec3::new(0.3, 5.2, 9.0) },
+        Fresnel::F82 { f0, b: a },
+        Fresnel::Series2 { f0, c: [a, b] },
+        Fresnel::Series3 { f0, c: [a, b, c] },
+        Fresnel::Series4 { f0, c: [a, b, c, -b] },
+    ];
     let all = forms.map(|fresnel| {
         let closed = matches!(fresnel, Fresnel::Rescaled { .. } | Fresnel::Schlick { .. });
         let albedo = (!closed).then(|| Masking::ALL.map(|masking| mean_fresnel_table(&fresnel, masking)));
@@ -67,14 +79,10 @@ fn floats(curves: &[Curve]) -> Vec<f32> {
     assert_eq!(floats.len(), first() as usize);
     floats.resize(floats.len() + FIELDS * curves.len(), 0.0);
     for (i, curve) in curves.iter().enumerate() {
-        let (mut n, mut k, mut table) = (Vec3::ONE, Vec3::ZERO, 0);
-        match &curve.fresnel {
-            Fresnel::Rescaled { .. } | Fresnel::Schlick { .. } => {}
-            Fresnel::Conductor { n: index, k: extinction } => (n, k) = (*index, *extinction),
-            Fresnel::Spectral { table: entries } => {
-                table = floats.len();
-                floats.extend(entries.iter().flat_map(Vec3::to_array));
-            }
+        let mut table = 0;
+        if let Fresnel::Spectral { table: entries } = &curve.fresnel {
+            table = floats.len();
+            floats.extend(entries.iter().flat_map(Vec3::to_array));
         }
         let mut albedo = [0; 2];
         for (place, table) in albedo.iter_mut().zip(curve.albedo.iter().flatten()) {
@@ -83,7 +91,8 @@ fn floats(curves: &[Curve]) -> Vec<f32> {
         }
         // Whole numbers below 2^24 keep every digit.
         let numbers = [curve.fresnel.form() as usize, table, albedo[0], albedo[1]].map(|v| v as f32);
-        let fields = [curve.fresnel.f0(), n, k, curve.mean].map(|v| v.to_array());
+        let [f0, c0, c1, c2, c3] = curve.fresnel.coefficients();
+        let fields = [f0, c0, c1, c2, c3, curve.mean].map(|v| v.to_array());
         let at = first() as usize + FIELDS * i;
         floats[at..at + FIELDS].copy_from_slice(&[&numbers, fields.as_flattened()].concat());
     }

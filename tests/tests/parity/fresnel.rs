@@ -1,6 +1,6 @@
 //! Every form of the reflectance curve.
 
-use burnish_core::surface::fresnel::{self, conductor, dielectric, exact, schlick, spectral};
+use burnish_core::surface::fresnel::{self, compensated, conductor, dielectric, exact, schlick, spectral};
 use glam::{Vec3, Vec4};
 
 use crate::curves::{self, Curves};
@@ -19,6 +19,13 @@ pub fn cases() -> Vec<Case> {
             "y[0] = vec4f(fresnel_schlick(x[0].xyz, x[1].x, x[1].y), 0.0);",
             schlick_inputs,
             |x| [v4(schlick(x[0].truncate(), x[1].x, x[1].y), 0.0)],
+        ),
+        Case::new(
+            "fresnel: a dip of any exponent",
+            leaf,
+            "y[0] = vec4f(fresnel_compensated(vec3f(0.5), x[0].xyz, x[1].xyz, x[0].w), 0.0);",
+            dips,
+            |x| [v4(compensated(Vec3::splat(0.5), x[0].truncate(), x[1].truncate(), x[0].w), 0.0)],
         ),
         Case::new("fresnel: a conductor", leaf, CONDUCTOR, indices, |x| [one(conductor(x[0].x, x[0].y, x[0].z))]),
         Case::new("fresnel: a conductor is within 4e-6 of the truth in f64", leaf, CONDUCTOR, metals, |x| {
@@ -62,6 +69,17 @@ fn schlick_inputs() -> Vec<[Vec4; 2]> {
     for f0 in colors {
         for f90 in [0.0, 0.5, 1.0] {
             inputs.extend(angles().chain([-0.5, 1.5]).map(|c| [v4(f0, 0.0), Vec4::new(f90, c, 0.0, 0.0)]));
+        }
+    }
+    inputs
+}
+
+/// Strengths and exponents, small and large ones.
+fn dips() -> Vec<[Vec4; 2]> {
+    let mut inputs = Vec::new();
+    for a in [Vec3::ZERO, Vec3::new(-1.0, 0.05, 5.0)] {
+        for alpha in [Vec3::new(0.02, 0.5, 1.0), Vec3::new(2.0, 5.3, 6.0), Vec3::new(12.0, 40.0, 120.0)] {
+            inputs.extend(angles().chain([-0.5, 1.5]).map(|c| [v4(a, c), v4(alpha, 0.0)]));
         }
     }
     inputs

@@ -12,6 +12,7 @@ mod tests;
 use std::sync::LazyLock;
 
 use crate::leaf::Leaf;
+use crate::material::preset::{FormChoice, Tolerance};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
 use crate::surface::fresnel::Fresnel;
 use crate::surface::ggx::Masking;
@@ -73,11 +74,41 @@ pub const PARAMS: &[ParamSpec] = &[
         key: "fresnel",
         label: "Fresnel form",
         unit: "",
-        kind: ParamKind::Choice { options: &["spectral", "rescaled", "schlick"], default: 0 },
-        help: "Form in which metal presets are rendered; it is resolved into the materials before the scene is drawn.",
+        kind: ParamKind::Choice { options: &FormChoice::IDS, default: 0 },
+        help: "Form in which metal presets are rendered; it is resolved into the materials before the scene is drawn. \
+               cheapest: the cheapest form of each metal within the two tolerances; spectral: the truth.",
+        affects: Affects::Prepare,
+    },
+    ParamSpec {
+        key: "fresnel-error",
+        label: "Fresnel error",
+        unit: "%",
+        kind: ParamKind::Number { min: 0.0, max: 100.0, default: 1.0 },
+        help: "Largest relative error over red, green, blue and angle that the cheapest form of a metal may have.",
+        affects: Affects::Prepare,
+    },
+    ParamSpec {
+        key: "fresnel-delta-e",
+        label: "Fresnel color difference",
+        unit: "CIEDE2000",
+        kind: ParamKind::Number { min: 0.0, max: 100.0, default: 1.0 },
+        help: "Largest colour difference on a ball that the cheapest form of a metal may have; 1 is about to be seen.",
         affects: Affects::Prepare,
     },
 ];
+
+/// The Fresnel form that settings made of [`PARAMS`] choose.
+pub fn form_choice(settings: &Settings) -> FormChoice {
+    let number = |key: &str, otherwise: f64| match settings.get(key) {
+        Some(ParamValue::Number(v)) => v,
+        _ => otherwise,
+    };
+    let or = Tolerance::default();
+    let relative = 0.01 * number("fresnel-error", 100.0 * or.relative);
+    let tolerance = Tolerance { relative, delta_e: number("fresnel-delta-e", or.delta_e) };
+    let text = settings.text("fresnel").unwrap_or_default();
+    FormChoice::read(&text, tolerance).unwrap_or(FormChoice::Cheapest(tolerance))
+}
 
 /// The settings as a frame reads them.
 #[derive(Clone, Copy, Debug, PartialEq)]

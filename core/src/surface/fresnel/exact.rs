@@ -26,6 +26,14 @@ pub fn exact(n: f64, k: f64, cos_theta: f64) -> f64 {
     (0.5 * (rs + rp)).clamp(0.0, 1.0)
 }
 
+/// Slope `dF/dx` of [`exact`] at 90 degrees, `x = cos theta = 0`: `-2 (Re w0 + Re(eta^2 conj w0)) / |w0|^2`,
+/// `w0 = sqrt(eta^2 - 1)`. Infinite for an index of 1.
+pub fn grazing_slope(n: f64, k: f64) -> f64 {
+    let eta2 = (n * n - k * k, 2.0 * n * k);
+    let w = complex_sqrt(eta2.0 - 1.0, eta2.1);
+    -2.0 * (w.0 + eta2.0 * w.0 + eta2.1 * w.1) / (w.0 * w.0 + w.1 * w.1)
+}
+
 /// `|(a - w) / (a + w)|^2`; 1 where both vanish.
 fn reflected(a: (f64, f64), w: (f64, f64)) -> f64 {
     let difference = (a.0 - w.0).powi(2) + (a.1 - w.1).powi(2);

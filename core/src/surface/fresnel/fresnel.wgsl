@@ -4,18 +4,26 @@ const FRESNEL_RESCALED: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;
 const FRESNEL_CONDUCTOR: u32 = 2u;
 const FRESNEL_SPECTRAL: u32 = 3u;
+const FRESNEL_COMPENSATED: u32 = 4u;
+const FRESNEL_F82: u32 = 5u;
+const FRESNEL_SERIES2: u32 = 6u;
+const FRESNEL_SERIES3: u32 = 7u;
+const FRESNEL_SERIES4: u32 = 8u;
 const FRESNEL_TABLE_SIZE: u32 = 256u;
 // Range of n and k in which f32 neither over- nor underflows.
 const FRESNEL_INDEX_MIN: f32 = 1e-4;
 const FRESNEL_INDEX_MAX: f32 = 1e3;
 
 // A reflectance curve; each form reads the fields that it needs. Never stored in a buffer.
+// c0 to c3: n and k, a and alpha, b, or the coefficients of a series.
 struct Fresnel {
     form: u32,
     table: u32,
     f0: vec3f,
-    n: vec3f,
-    k: vec3f,
+    c0: vec3f,
+    c1: vec3f,
+    c2: vec3f,
+    c3: vec3f,
 }
 
 // f0 + (f90 - f0)(1 - cos)^5.
@@ -23,6 +31,50 @@ fn fresnel_schlick(f0: vec3f, f90: f32, cos_theta: f32) -> vec3f {
     let y = 1.0 - clamp(cos_theta, 0.0, 1.0);
     let y2 = y * y;
     return f0 + (vec3f(f90) - f0) * (y2 * y2 * y);
+}
+
+// F* - a x (1 - x)^alpha, F* Schlick's curve to 1; alpha above 0.
+fn fresnel_compensated(f0: vec3f, a: vec3f, alpha: vec3f, cos_theta: f32) -> vec3f {
+    let x = clamp(cos_theta, 0.0, 1.0);
+    let y = 1.0 - x;
+    let power = select(vec3f(0.0), pow(vec3f(max(y, 1e-8)), alpha), y > 0.0);
+    return fresnel_schlick(f0, 1.0, x) - x * a * power;
+}
+
+// The same with the exponent 6.
+fn fresnel_f82(f0: vec3f, b: vec3f, cos_theta: f32) -> vec3f {
+    let x = clamp(cos_theta, 0.0, 1.0);
+    let y = 1.0 - x;
+    let y2 = y * y;
+    return fresnel_schlick(f0, 1.0, x) - x * (y2 * y2 * y2) * b;
+}
+
+// F* - x (c0 y^3 + c1 y^8), y = 1 - x.
+fn fresnel_series2(f0: vec3f, c0: vec3f, c1: vec3f, cos_theta: f32) -> vec3f {
+    let x = clamp(cos_theta, 0.0, 1.0);
+    let y = 1.0 - x;
+    let y2 = y * y;
+    let y4 = y2 * y2;
+    return fresnel_schlick(f0, 1.0, x) - x * (c0 * (y2 * y) + c1 * (y4 * y4));
+}
+
+// F* - x (c0 y^2 + c1 y^6 + c2 y^12).
+fn fresnel_series3(f0: vec3f, c0: vec3f, c1: vec3f, c2: vec3f, cos_theta: f32) -> vec3f {
+    let x = clamp(cos_theta, 0.0, 1.0);
+    let y = 1.0 - x;
+    let y2 = y * y;
+    let y6 = y2 * y2 * y2;
+    return fresnel_schlick(f0, 1.0, x) - x * (c0 * y2 + c1 * y6 + c2 * (y6 * y6));
+}
+
+// F* - x (c0 y^2 + c1 y^4 + c2 y^8 + c3 y^16).
+fn fresnel_series4(f0: vec3f, c0: vec3f, c1: vec3f, c2: vec3f, c3: vec3f, cos_theta: f32) -> vec3f {
+    let x = clamp(cos_theta, 0.0, 1.0);
+    let y = 1.0 - x;
+    let y2 = y * y;
+    let y4 = y2 * y2;
+    let y8 = y4 * y4;
+    return fresnel_schlick(f0, 1.0, x) - x * (c0 * y2 + c1 * y4 + c2 * y8 + c3 * (y8 * y8));
 }
 
 // Exact unpolarised reflectance of one complex index n + ik from vacuum, in the form that keeps its digits in f32.
@@ -77,10 +129,25 @@ fn fresnel_eval(f: Fresnel, cos_theta: f32) -> vec3f {
     switch f.form {
         case FRESNEL_CONDUCTOR: {
             value = vec3f(
-                fresnel_conductor(f.n.x, f.k.x, cos_theta),
-                fresnel_conductor(f.n.y, f.k.y, cos_theta),
-                fresnel_conductor(f.n.z, f.k.z, cos_theta),
+                fresnel_conductor(f.c0.x, f.c1.x, cos_theta),
+                fresnel_conductor(f.c0.y, f.c1.y, cos_theta),
+                fresnel_conductor(f.c0.z, f.c1.z, cos_theta),
             );
+        }
+        case FRESNEL_COMPENSATED: {
+            value = fresnel_compensated(f.f0, f.c0, f.c1, cos_theta);
+        }
+        case FRESNEL_F82: {
+            value = fresnel_f82(f.f0, f.c0, cos_theta);
+        }
+        case FRESNEL_SERIES2: {
+            value = fresnel_series2(f.f0, f.c0, f.c1, cos_theta);
+        }
+        case FRESNEL_SERIES3: {
+            value = fresnel_series3(f.f0, f.c0, f.c1, f.c2, cos_theta);
+        }
+        case FRESNEL_SERIES4: {
+            value = fresnel_series4(f.f0, f.c0, f.c1, f.c2, f.c3, cos_theta);
         }
         case FRESNEL_SPECTRAL: {
             value = fresnel_spectral(f.table, cos_theta);

@@ -69,10 +69,13 @@ fn surface_of(t: Texel, m: MaterialData) -> Surface {
     s.masking = view.masking;
     s.multiple_scattering = view.multiple_scattering != 0u;
     if (m.flags & MATERIAL_PRESET) != 0u {
-        s.fresnel = Fresnel(m.fresnel_form, m.fresnel_table, m.fresnel_f0, m.fresnel_n, m.fresnel_k);
+        s.fresnel = Fresnel(
+            m.fresnel_form, m.fresnel_table, m.fresnel_f0, m.fresnel_c0, m.fresnel_c1, m.fresnel_c2, m.fresnel_c3,
+        );
         s.fresnel_mean = m.fresnel_mean;
     } else {
-        s.fresnel = Fresnel(FRESNEL_RESCALED, 0u, t.base_color, vec3f(1.0), vec3f(0.0));
+        let none = vec3f(0.0);
+        s.fresnel = Fresnel(FRESNEL_RESCALED, 0u, t.base_color, none, none, none, none);
         s.fresnel_mean = t.base_color + (1.0 - t.base_color) / 21.0;
     }
     return s;

@@ -1,7 +1,12 @@
 //! The metal of a material: which, in which form, and what it bypasses.
 
-use burnish_core::material::preset::FORMS;
+use std::borrow::Cow;
+use std::sync::LazyLock;
+
+use burnish_core::lighting::classical;
+use burnish_core::material::preset::{FormChoice, Preset, Tolerance};
 use burnish_core::material::{Material, TextureRole};
+use burnish_core::surface::fresnel::Form;
 use eframe::egui;
 
 use super::Context;
@@ -9,9 +14,14 @@ use crate::window::panel::presets::title;
 use crate::window::widget::{choice_ui, name_ui, reset_ui};
 
 /// What the Fresnel forms are.
-const FORMS_HELP: &str = "How the reflectance of the metal changes with the angle.\nspectral: integrated from the measured \
-                          n and k, the truth.\nrescaled: Schlick's curve with the true reflectance at normal incidence.\n\
-                          schlick: ignores the extinction, wrong for metals; for comparison.";
+static FORMS_HELP: LazyLock<String> = LazyLock::new(|| {
+    let line = |form: Form| format!("\n{form}: {}", form.help());
+    let lines: String = Form::ALL.into_iter().map(line).collect();
+    format!(
+        "How the reflectance of the metal changes with the angle.\ncheapest: the first of these within the tolerances \
+         of the lighting settings{lines}"
+    )
+});
 
 /// Shows the metal.
 pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
@@ -36,6 +46,11 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
         }
     });
     form_ui(ui, context, index, &entry.name, used.fresnel.as_deref());
+    if let Some(metal) = metal {
+        let settings = document.lighting.settings();
+        let choice = used.fresnel.as_deref().and_then(|id| FormChoice::read(id, Tolerance::default()).ok());
+        errors_ui(ui, metal, choice.unwrap_or_else(|| classical::form_choice(&settings)));
+    }
     let texts = context.session.scene().materials.get(index).map(overrides).unwrap_or_default();
     for text in texts {
         ui.add(egui::Label::new(egui::RichText::new(format!("• {text}")).small()).wrap());
@@ -46,23 +61,43 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
 fn form_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, material: &str, form: Option<&str>) {
     let of_scene = context.session.document().lighting.settings().text("fresnel").unwrap_or_default();
     let mut words = vec![format!("as the scene ({of_scene})")];
-    words.extend(FORMS.map(String::from));
-    let place = form.map_or(0, |form| FORMS.iter().position(|known| *known == form).map_or(0, |place| place + 1));
+    words.extend(FormChoice::IDS.map(String::from));
+    let place =
+        form.map_or(0, |form| FormChoice::IDS.iter().position(|known| *known == form).map_or(0, |place| place + 1));
     let mut picked = None;
     ui.horizontal(|ui| {
         let gap = ui.spacing().item_spacing.x;
-        let name = name_ui(ui, "Fresnel form", place != 0, 0.36 * ui.available_width()).on_hover_text(FORMS_HELP);
+        let name =
+            name_ui(ui, "Fresnel form", place != 0, 0.36 * ui.available_width()).on_hover_text(FORMS_HELP.as_str());
         let width = ui.available_width() - 18.0 - 2.0 * gap;
-        picked = choice_ui(ui, "Fresnel form", &words, place, width, Some(&name), FORMS_HELP);
+        picked = choice_ui(ui, "Fresnel form", &words, place, width, Some(&name), &FORMS_HELP);
         if reset_ui(ui, "Fresnel form", place != 0) {
             picked = Some(0);
         }
     });
     if let Some(picked) = picked {
-        let form = picked.checked_sub(1).and_then(|place| FORMS.get(place)).copied();
+        let form = picked.checked_sub(1).and_then(|place| FormChoice::IDS.get(place)).copied();
         context.session.edit("Fresnel form", material, |document| document.set_fresnel(index, form));
         context.session.seal();
     }
+}
+
+/// How far the form is from the truth, and why it was chosen. Nothing for metals that were not fitted yet.
+fn errors_ui(ui: &mut egui::Ui, metal: &Preset, choice: FormChoice) {
+    let Cow::Borrowed(fits) = metal.fits() else { return };
+    let form = choice.form(metal);
+    let Some(fit) = fits.forms.get(&form) else { return };
+    let text = format!("{form}: error {:.2} %, ΔE {:.2}", 100.0 * fit.relative, fit.delta_e);
+    let reason = match choice {
+        FormChoice::Cheapest(tolerance) => fits.cheapest(tolerance).reason,
+        FormChoice::Of(form) => form.help().to_string(),
+    };
+    let mut hover = format!(
+        "{reason}.\nLargest relative error over red, green, blue and angle, and largest CIEDE2000 on a ball, against \
+         the spectral curve."
+    );
+    hover.extend(fit.note.iter().map(|note| format!("\n{note}")));
+    ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap()).on_hover_text(hover);
 }
 
 /// What of the material does not count under a metal.

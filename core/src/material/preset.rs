@@ -6,6 +6,7 @@
 mod check;
 mod fits;
 mod library;
+mod text;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
 pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
@@ -87,6 +88,9 @@ pub struct Source {
     /// Year of publication.
     #[serde(default)]
     pub year: Option<u32>,
+    /// Title of the publication.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
     /// Journal with volume and pages, or report.
     #[serde(default)]
     pub journal: Option<String>,
@@ -99,7 +103,7 @@ pub struct Source {
     /// Licence of that table.
     #[serde(default)]
     pub licence: Option<String>,
-    /// More, such as title and address.
+    /// More, such as an address.
     #[serde(flatten)]
     pub other: Map<String, Value>,
 }

@@ -104,8 +104,8 @@ fn the_folder_and_the_library_hold_the_same_presets_under_their_ids() {
 #[test]
 fn every_preset_names_its_source_and_covers_the_visible_range() {
     for p in library() {
-        let Source { author, year, journal, doi, table, licence, other } = &p.source;
-        assert!(author.is_some() && journal.is_some() && table.is_some(), "{}", p.id);
+        let Source { author, year, journal, doi, title, table, licence, other } = &p.source;
+        assert!(author.is_some() && title.is_some() && journal.is_some() && table.is_some(), "{}", p.id);
         // The table of tantalum names a handbook only, and stands in a collection that states no licence.
         let known = p.id != "Ta";
         assert_eq!(year.is_some(), known, "{}", p.id);

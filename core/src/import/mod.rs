@@ -13,6 +13,7 @@ mod gltf;
 mod guard;
 mod numbers;
 mod obj;
+pub mod optical;
 mod picture;
 mod report;
 mod resolve;

@@ -21,10 +21,8 @@ pub(super) fn source(reference: &str) -> Source {
     };
     source.author = Some(author).filter(|text| !text.is_empty());
     source.journal = Some(journal).filter(|text| !text.is_empty());
+    source.title = Some(title).filter(|text| !text.is_empty());
     (source.year, source.doi) = (year, Some(doi));
-    if !title.is_empty() {
-        source.other.insert("title".into(), Value::String(title));
-    }
     if !rest.is_empty() {
         source.other.insert("reference".into(), Value::String(whole));
     }
@@ -165,7 +163,7 @@ mod tests {
              [*Phys. Rev. B* **6**, 4370-4379 (1972)](https://doi.org/10.1103/PhysRevB.6.4370)\n",
         );
         assert_eq!(s.author.as_deref(), Some("P. B. Johnson and R. W. Christy"));
-        assert_eq!(other(&s, "title"), "Optical constants of the noble metals");
+        assert_eq!(s.title.as_deref(), Some("Optical constants of the noble metals"));
         assert_eq!(s.journal.as_deref(), Some("Phys. Rev. B 6, 4370-4379"));
         assert_eq!((s.year, s.doi.as_deref()), (Some(1972), Some("10.1103/PhysRevB.6.4370")));
         assert_eq!(other(&s, "reference"), "");
@@ -179,7 +177,7 @@ mod tests {
              <br>(Data &amp; more)",
         );
         assert_eq!(s.author.as_deref(), Some("W. S. M. Werner, K. Glantschnig, C. Ambrosch-Draxl"));
-        assert_eq!(other(&s, "title"), "Optical constants and data for 17 metals");
+        assert_eq!(s.title.as_deref(), Some("Optical constants and data for 17 metals"));
         assert_eq!(s.journal.as_deref(), Some("J. Phys Chem Ref. Data 38, 1013-1092"));
         assert_eq!((s.year, s.doi.as_deref()), (Some(2009), Some("10.1063/1.3243762")));
         assert!(other(&s, "reference").ends_with("(2009) (Data & more)"), "{}", other(&s, "reference"));

@@ -53,7 +53,11 @@ impl Draft {
         let (unit, unit_origin) = self.unit(options, log)?;
         let n = ordered(&self.n, unit, log);
         // What is wrong with the first column of a row is said once.
-        let k = if self.n.shares_rows(&self.k) { ordered(&self.k, unit, &mut Log::default()) } else { ordered(&self.k, unit, log) };
+        let k = if self.n.shares_rows(&self.k) {
+            ordered(&self.k, unit, &mut Log::default())
+        } else {
+            ordered(&self.k, unit, log)
+        };
         if log.failed() {
             return None;
         }
@@ -198,6 +202,7 @@ impl Draft {
             wavelength_nm: table.nm,
             n: table.n,
             k: table.k,
+            fits: None,
             other: Map::new(),
         }
     }

@@ -5,6 +5,7 @@
 
 mod command;
 mod failure;
+mod report;
 mod source;
 mod value;
 pub mod window;

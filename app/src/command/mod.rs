@@ -2,6 +2,7 @@
 
 mod compare;
 mod doctor;
+mod fresnel_report;
 mod info;
 mod measure;
 pub mod open;
@@ -23,8 +24,10 @@ pub enum Command {
     Render(render::Args),
     /// List what a scene consists of
     Info(info::Args),
-    /// List the metal presets
+    /// List the metal presets, or the errors of their Fresnel forms
     Presets(presets::Args),
+    /// Write a page on how well Fresnel forms stand for measured metals
+    FresnelReport(fresnel_report::Args),
     /// Write a picture of a document, or of the whole window with it, and compare it with an earlier one
     Snapshot(snapshot::Args),
     /// Measure how different two pictures are
@@ -41,6 +44,7 @@ impl Command {
             Command::Render(args) => render::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
+            Command::FresnelReport(args) => fresnel_report::run(args, out),
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),

@@ -157,7 +157,7 @@ fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<
 }
 
 /// A preset's file may be at fault, or the name that was given.
-fn metal_failure(preset: &str, error: PresetError) -> Failure {
+pub(super) fn metal_failure(preset: &str, error: PresetError) -> Failure {
     match error {
         PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } => {
             Failure::input(Path::new(preset), error)

@@ -2,6 +2,7 @@
 
 mod comparing;
 mod documents;
+mod forms;
 mod rendering;
 
 use std::ffi::OsString;
@@ -33,6 +34,11 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("info describes the workbench in words and in JSON", &[], info_describes_the_workbench),
         trial("info reads a model file", &[], info_reads_a_model),
         trial("presets lists every file of the folder", &[], presets_lists_every_file),
+        trial("presets gives colours in other spaces", &[], forms::the_list_gives_colours_in_other_spaces),
+        trial("the table of forms has a row for each metal", &[], forms::the_table_has_a_row_for_each_metal_and_form),
+        trial("the tolerance decides which form is chosen", &[], forms::the_tolerance_decides_which_form_is_chosen),
+        trial("the report on forms is one sound page", &[], forms::the_report_is_one_sound_page),
+        trial("a report on some metals names what it cannot use", &[], forms::a_report_on_some_metals),
         trial("a picture compared with itself is equal", &[], comparing::a_picture_equals_itself),
         trial("a difference over the threshold is exit code 1", &[], comparing::a_difference_over_the_threshold),
         trial("pictures that cannot be compared are refused in words", &[], comparing::incomparable_pictures),
@@ -110,7 +116,7 @@ fn text(path: &Path) -> &str {
 fn help_lists_every_command() {
     for args in [&["--help"], &["help"]] {
         let help = burnish(args).succeeded().out;
-        for command in ["render", "info", "presets", "compare", "doctor", "Exit codes"] {
+        for command in ["render", "info", "presets", "fresnel-report", "compare", "doctor", "Exit codes"] {
             assert!(help.contains(command), "{command} is missing in: {help}");
         }
     }

@@ -89,7 +89,8 @@ pub fn readme_examples_run() {
     let mut run = 0;
     for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
         let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
-        let is_file = |arg: &str| [".png", ".exr", ".glb", ".hdr"].iter().any(|ending| arg.ends_with(ending));
+        let is_file =
+            |arg: &str| [".png", ".exr", ".glb", ".hdr", ".html", ".csv"].iter().any(|ending| arg.ends_with(ending));
         for arg in args.iter_mut().filter(|arg| is_file(arg)) {
             *arg = text(&folder.join(&*arg)).into();
         }
@@ -122,6 +123,8 @@ pub fn readme_examples_run() {
         "workbench.exr",
         "brass.png",
         "diff.png",
+        "forms.csv",
+        "forms.html",
     ] {
         assert!(folder.join(picture).is_file(), "{picture}");
     }

@@ -77,6 +77,13 @@ fn opening(study: &Study, summaries: &[Summary]) -> String {
             format!("within 1 % by <code>{form}</code>; median {median} %, worst {worst} %"),
         ));
     }
+    if let Some(Summary { delta_e, .. }) = summaries.iter().find(|s| s.form == Form::SampledNk) {
+        let visible = delta_e.iter().filter(|delta_e| **delta_e > 1.0).count();
+        figures.push((
+            format!("{visible} of {metals}"),
+            format!("off by more than \u{394}E2000 1 with <code>{}</code>", Form::SampledNk),
+        ));
+    }
     let worst = brief(clipped.iter().copied().fold(0.0, f64::max));
     figures.push((
         clipped.len().to_string(),

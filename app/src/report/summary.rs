@@ -163,7 +163,7 @@ impl Labels {
         let width = 6.1 * text.chars().count() as f64;
         let places =
             [(9.0, 4.0), (-9.0 - width, 4.0), (9.0, -7.0), (9.0, 15.0), (-9.0 - width, -7.0), (-9.0 - width, 15.0)];
-        let boxed = |(dx, dy): (f64, f64)| [x + dx, y + dy - 9.0, x + dx + width, y + dy + 2.0];
+        let boxed = |(dx, dy): (f64, f64)| [x + dx, y + dy - 10.0, x + dx + width, y + dy + 3.0];
         let free = |place: &&(f64, f64)| self.0.iter().all(|taken| !overlap(*taken, boxed(**place)));
         let place = *places.iter().find(free).unwrap_or(&places[0]);
         self.0.push(boxed(place));

@@ -17,6 +17,7 @@ pub mod scene;
 pub mod shader;
 mod tables;
 mod textures;
+pub mod times;
 pub mod viewport;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};

@@ -3,7 +3,7 @@
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
-use burnish_core::surface::layered;
+use burnish_core::surface::{fresnel, layered};
 
 /// A shader module, joined from leaves and the pass's own files.
 pub struct Shader {
@@ -63,8 +63,12 @@ pub static ACCUMULATE: Shader =
 pub static DISPLAY: Shader =
     Shader { name: "display", leaves: &[&tone::LEAF], files: &[TYPES, include_str!("pass/display/display.wgsl")] };
 
+/// Times reflectance curves.
+pub static TIMES: Shader =
+    Shader { name: "times", leaves: &[&fresnel::WGSL], files: &[include_str!("times/times.wgsl")] };
+
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE, &DISPLAY];
+pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE, &DISPLAY, &TIMES];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "

@@ -5,6 +5,7 @@ pub mod frame;
 pub mod minimax;
 pub mod minimize;
 pub mod oct;
+pub mod power;
 pub mod quadrature;
 pub mod sampling;
 pub mod special;

@@ -1,11 +1,13 @@
-//! How far apart two pictures are.
+//! How far apart two pictures are, and what an evaluation costs.
 //!
 //! All take the reference first. relMSE and the luminance bias look at linear light, FLIP at what an observer sees on a
 //! screen. Alpha is ignored: pictures are compared as they stand over black.
 
 mod flip;
+mod times;
 
 pub use flip::{FlipError, PIXELS_PER_DEGREE, flip};
+pub use times::evaluation_times;
 
 use glam::Vec3;
 

@@ -55,6 +55,7 @@ fn complex_sqrt(re: f64, im: f64) -> (f64, f64) {
 ///
 /// The form without tangents (finite at 90 degrees), with the real part of the root taken from the imaginary one where
 /// it would cancel, as it does for most metals.
+#[inline]
 pub fn conductor(n: f32, k: f32, cos_theta: f32) -> f32 {
     let eta = bounded(n, INDEX_MIN, INDEX_MAX);
     let kappa = bounded(k, 0.0, INDEX_MAX);
@@ -89,7 +90,7 @@ pub fn f0(n: f32, k: f32) -> f32 {
 /// Cosine-weighted mean of any curve, by quadrature in the square root of the cosine, where grazing curves are smooth.
 pub(super) fn mean(fresnel: &Fresnel) -> Vec3 {
     let mut sum = DVec3::ZERO;
-    for &(t, weight) in GaussLegendre::new(24).nodes() {
+    for &(t, weight) in GaussLegendre::new(64).nodes() {
         let x = t * t;
         sum += 4.0 * weight * x * t * fresnel.eval(x as f32).as_dvec3();
     }

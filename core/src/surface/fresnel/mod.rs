@@ -3,6 +3,7 @@
 //! One file per form. [`exact::exact`] is the truth in f64; the others are what a renderer evaluates. Angles enter as
 //! `cos_theta`, the cosine between the light and the (microfacet) normal.
 
+mod batch;
 mod compensated;
 mod dielectric;
 mod exact;

@@ -22,6 +22,9 @@ const PUBLISHED_ERRORS: [(&str, f64); 4] = [("Ag", 0.02), ("Cu", 0.05), ("Au", 0
 const PUBLISHED_TIMES: [(Form, f64); 4] =
     [(Form::EffectiveNk, 1.0), (Form::Schlick, 0.28), (Form::Rescaled, 0.33), (Form::Fitted, 0.54)];
 
+/// Rounds of timing on the processor, of which the median counts.
+const ROUNDS: usize = 31;
+
 /// The exact formula: to it all times are relative.
 const EXACT: Form = Form::EffectiveNk;
 
@@ -88,7 +91,7 @@ fn error_row(metal: &'static str, published: f64) -> Result<ErrorRow, Failure> {
 /// The name of the adapter that was timed, and every form.
 fn time_rows(metal: &Preset) -> Result<(Option<String>, Vec<TimeRow>), Failure> {
     let curves: Vec<Fresnel> = Form::ALL.iter().map(|form| metal.fresnel(*form)).collect();
-    let cpu = evaluation_times(&curves);
+    let cpu = evaluation_times(&curves, ROUNDS);
     // A machine without an adapter still has a processor.
     let gpu = Gpu::new().ok();
     let gpu_times =

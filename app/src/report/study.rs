@@ -1,18 +1,13 @@
 //! What the table and the report are made of: every form of every metal with its errors and its time.
 
-use std::hint::black_box;
-use std::time::Instant;
-
 use burnish_core::color::gamut::{Clip, clip};
 use burnish_core::material::preset::{Cheapest, Fit, Preset, Tolerance};
+use burnish_core::measure::evaluation_times;
 use burnish_core::surface::fresnel::{Form, Fresnel};
-use glam::Vec3;
 use rayon::prelude::*;
 
-/// Cosines of a batch.
-const COSINES: u16 = 4096;
-/// Batches that are timed; odd, so that one is in the middle.
-const BATCHES: usize = 7;
+/// Rounds of timing for a metal. Few, for the medians over the metals are what counts.
+const ROUNDS: usize = 3;
 
 /// Forms of several metals, compared.
 pub struct Study {
@@ -36,7 +31,7 @@ pub struct Studied {
     pub form: Form,
     pub fit: Fit,
     pub fresnel: Fresnel,
-    /// Time of one evaluation of R, G and B on this machine, ns.
+    /// Time of one evaluation of R, G and B in a batch on this machine, ns.
     pub nanoseconds: f64,
     /// That time over the one of the exact formula with one n and k per channel.
     pub ratio: f64,
@@ -59,7 +54,7 @@ pub struct Summary {
 }
 
 impl Study {
-    /// Fits where fits are not stored, and measures times: a few milliseconds a metal, a tenth of a second where fits
+    /// Fits where fits are not stored, and measures times: a hundredth of a second a metal, a tenth more where fits
     /// must be made.
     pub fn new(presets: Vec<Preset>, tolerance: Tolerance) -> Study {
         let mut entries: Vec<Entry> = presets.into_par_iter().map(|preset| Entry::new(preset, tolerance)).collect();
@@ -119,34 +114,15 @@ impl Entry {
     }
 
     fn measure(&mut self) {
-        for studied in &mut self.forms {
-            studied.nanoseconds = nanoseconds(&studied.fresnel);
+        let curves: Vec<Fresnel> = self.forms.iter().map(|studied| studied.fresnel.clone()).collect();
+        for (studied, seconds) in self.forms.iter_mut().zip(evaluation_times(&curves, ROUNDS)) {
+            studied.nanoseconds = 1e9 * seconds;
         }
         let exact = self.studied(Form::EffectiveNk).map_or(1.0, |studied| studied.nanoseconds);
         for studied in &mut self.forms {
             studied.ratio = studied.nanoseconds / exact;
         }
     }
-}
-
-/// Time of one evaluation of R, G and B, ns: the median over batches.
-fn nanoseconds(fresnel: &Fresnel) -> f64 {
-    let cosines: Vec<f32> = (0..COSINES).map(|i| (f32::from(i) + 0.5) / f32::from(COSINES)).collect();
-    let mut values = vec![Vec3::ZERO; cosines.len()];
-    let mut batch = || {
-        let start = Instant::now();
-        let fresnel = black_box(fresnel);
-        for (value, cos_theta) in values.iter_mut().zip(&cosines) {
-            *value = fresnel.eval(*cos_theta);
-        }
-        black_box(&values);
-        start.elapsed().as_secs_f64() * 1e9 / f64::from(COSINES)
-    };
-    // The first one fills the caches.
-    batch();
-    let mut times: Vec<f64> = (0..BATCHES).map(|_| batch()).collect();
-    times.sort_by(f64::total_cmp);
-    quantile(&times, 0.5)
 }
 
 /// The value a share of the way through ascending values, 0 of none.

@@ -9,17 +9,16 @@ use crate::surface::fresnel::Fresnel;
 const BATCH: usize = 1024;
 /// Batches that are timed together.
 const BATCHES: usize = 16;
-/// Rounds over all curves, of which the median counts.
-const ROUNDS: usize = 31;
 
 /// Seconds that each curve takes for the three channels at one angle in batches of 1024, on one thread.
 ///
-/// The curves take turns, so that a busy machine slows all alike; the median of 31 rounds counts.
-pub fn evaluation_times(curves: &[Fresnel]) -> Vec<f64> {
+/// The curves take turns, so that a busy machine slows all alike; the median of the rounds counts, at least one. A round
+/// of a curve takes a few tenths of a millisecond.
+pub fn evaluation_times(curves: &[Fresnel], rounds: usize) -> Vec<f64> {
     let cosines: Vec<f32> = (0..BATCH).map(|i| (i as f32 + 0.5) / BATCH as f32).collect();
     let mut out = [(); 3].map(|()| vec![0.0; BATCH]);
-    let mut times = vec![Vec::with_capacity(ROUNDS); curves.len()];
-    for _ in 0..ROUNDS {
+    let mut times = vec![Vec::new(); curves.len()];
+    for _ in 0..rounds.max(1) {
         for (curve, times) in curves.iter().zip(&mut times) {
             let start = Instant::now();
             for _ in 0..BATCHES {

@@ -9,7 +9,7 @@ use super::{Fresnel, TABLE_SIZE, conductor};
 use crate::math::power::{exp2, log2};
 
 /// Angles in a block.
-const LANES: usize = 16;
+const LANES: usize = 8;
 
 type Lanes = [f32; LANES];
 
@@ -34,74 +34,89 @@ impl Fresnel {
 
     #[inline(always)]
     fn block(&self, x: &Lanes) -> [Lanes; 3] {
+        let channels = [0, 1, 2];
         match self {
-            Fresnel::Rescaled { f0 } | Fresnel::Schlick { f0 } => dipped(x, *f0, |_, _| 0.0),
-            Fresnel::Conductor { n, k } => [0, 1, 2].map(|c| x.map(|x| conductor(n[c], k[c], x))),
-            Fresnel::Spectral { table } => looked_up(table, x),
-            Fresnel::Compensated { f0, a, alpha } => compensated(x, *f0, *a, *alpha),
-            Fresnel::F82 { f0, b } => dipped(x, *f0, |p, c| b[c] * p.y6()),
-            Fresnel::Series2 { f0, c: k } => dipped(x, *f0, |p, c| k[0][c] * p.y3() + k[1][c] * p.y8()),
-            Fresnel::Series3 { f0, c: k } => {
-                dipped(x, *f0, |p, c| k[0][c] * p.y2 + k[1][c] * p.y6() + k[2][c] * (p.y6() * p.y6()))
-            }
-            Fresnel::Series4 { f0, c: k } => dipped(x, *f0, |p, c| {
-                k[0][c] * p.y2 + k[1][c] * p.y4() + k[2][c] * p.y8() + k[3][c] * (p.y8() * p.y8())
+            Fresnel::Conductor { n, k } => channels.map(|c| {
+                let (n, k) = (n[c], k[c]);
+                x.map(|x| conductor(n, k, x))
             }),
+            Fresnel::Spectral { table } => looked_up(table, x),
+            Fresnel::Rescaled { f0 } | Fresnel::Schlick { f0 } => {
+                let p = Powers::new(x);
+                channels.map(|c| p.dipped(f0[c], |_| 0.0))
+            }
+            Fresnel::Compensated { f0, a, alpha } => {
+                let p = Powers::new(x);
+                // One logarithm for the three channels. At normal incidence y is 0: the least number stands in, and the
+                // power of a negative infinity is taken as 0.
+                let log: Lanes = p.y.map(|y| log2(y.max(f32::MIN_POSITIVE)));
+                let above: Lanes = p.y.map(|y| if y > 0.0 { 1.0 } else { 0.0 });
+                channels.map(|c| {
+                    let (a, alpha) = (a[c], alpha[c]);
+                    p.dipped(f0[c], |i| a * above[i] * exp2(alpha * log[i]))
+                })
+            }
+            Fresnel::F82 { f0, b } => {
+                let p = Powers::new(x);
+                let y6: Lanes = std::array::from_fn(|i| p.y4[i] * p.y2[i]);
+                channels.map(|c| {
+                    let b = b[c];
+                    p.dipped(f0[c], |i| b * y6[i])
+                })
+            }
+            Fresnel::Series2 { f0, c: terms } => {
+                let p = Powers::new(x);
+                let y3: Lanes = std::array::from_fn(|i| p.y2[i] * p.y[i]);
+                channels.map(|c| {
+                    let [c3, c8] = terms.map(|term| term[c]);
+                    p.dipped(f0[c], |i| y3[i] * (c3 + p.y5[i] * c8))
+                })
+            }
+            Fresnel::Series3 { f0, c: terms } => {
+                let p = Powers::new(x);
+                let y6: Lanes = std::array::from_fn(|i| p.y4[i] * p.y2[i]);
+                channels.map(|c| {
+                    let [c2, c6, c12] = terms.map(|term| term[c]);
+                    p.dipped(f0[c], |i| p.y2[i] * (c2 + p.y4[i] * (c6 + y6[i] * c12)))
+                })
+            }
+            Fresnel::Series4 { f0, c: terms } => {
+                let p = Powers::new(x);
+                let y8: Lanes = std::array::from_fn(|i| p.y4[i] * p.y4[i]);
+                channels.map(|c| {
+                    let [c2, c4, c8, c16] = terms.map(|term| term[c]);
+                    p.dipped(f0[c], |i| p.y2[i] * (c2 + p.y2[i] * (c4 + p.y4[i] * (c8 + y8[i] * c16))))
+                })
+            }
         }
     }
 }
 
-/// Powers of `y = 1 - x`.
-#[derive(Clone, Copy)]
-struct Powers {
-    y: f32,
-    y2: f32,
+/// Powers of `y = 1 - x`, which the channels share.
+struct Powers<'a> {
+    x: &'a Lanes,
+    y: Lanes,
+    y2: Lanes,
+    y4: Lanes,
+    y5: Lanes,
 }
 
-impl Powers {
+impl Powers<'_> {
     #[inline(always)]
-    fn y3(self) -> f32 {
-        self.y2 * self.y
+    fn new(x: &Lanes) -> Powers<'_> {
+        let y = x.map(|x| 1.0 - x);
+        let y2 = y.map(|y| y * y);
+        let y4 = y2.map(|y2| y2 * y2);
+        let y5 = std::array::from_fn(|i| y4[i] * y[i]);
+        Powers { x, y, y2, y4, y5 }
     }
-    #[inline(always)]
-    fn y4(self) -> f32 {
-        self.y2 * self.y2
-    }
-    #[inline(always)]
-    fn y6(self) -> f32 {
-        self.y4() * self.y2
-    }
-    #[inline(always)]
-    fn y8(self) -> f32 {
-        self.y4() * self.y4()
-    }
-}
 
-/// `F* - x dip(powers, channel)`.
-#[inline(always)]
-fn dipped(x: &Lanes, f0: Vec3, dip: impl Fn(Powers, usize) -> f32) -> [Lanes; 3] {
-    [0, 1, 2].map(|c| {
-        x.map(|x| {
-            let y = 1.0 - x;
-            let p = Powers { y, y2: y * y };
-            f0[c] + (1.0 - f0[c]) * (p.y4() * y) - x * dip(p, c)
-        })
-    })
-}
-
-/// One logarithm for the three channels: `y^alpha = 2^(alpha log2 y)`.
-#[inline(always)]
-fn compensated(x: &Lanes, f0: Vec3, a: Vec3, alpha: Vec3) -> [Lanes; 3] {
-    // At normal incidence y is 0; the least number of the range stands in, and x y^alpha is taken as 0 below it.
-    let log = x.map(|x| log2((1.0 - x).max(f32::MIN_POSITIVE)));
-    [0, 1, 2].map(|c| {
-        std::array::from_fn(|i| {
-            let y = 1.0 - x[i];
-            let y2 = y * y;
-            let power = if y > 0.0 { exp2(alpha[c] * log[i]) } else { 0.0 };
-            f0[c] + (1.0 - f0[c]) * (y2 * y2 * y) - x[i] * a[c] * power
-        })
-    })
+    /// `F* - x dip(lane)` of a channel.
+    #[inline(always)]
+    fn dipped(&self, f0: f32, dip: impl Fn(usize) -> f32) -> Lanes {
+        let rest = 1.0 - f0;
+        std::array::from_fn(|i| f0 + rest * self.y5[i] - self.x[i] * dip(i))
+    }
 }
 
 #[inline(always)]

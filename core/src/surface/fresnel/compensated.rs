@@ -31,7 +31,7 @@ pub fn series2(f0: Vec3, c: &[Vec3; 2], cos_theta: f32) -> Vec3 {
     let y = 1.0 - x;
     let y2 = y * y;
     let y4 = y2 * y2;
-    schlick(f0, 1.0, x) - x * (c[0] * (y2 * y) + c[1] * (y4 * y4))
+    schlick(f0, 1.0, x) - (x * y2 * y) * (c[0] + (y4 * y) * c[1])
 }
 
 /// `F* - x (c2 y^2 + c6 y^6 + c12 y^12)`, y = 1 - x.
@@ -39,8 +39,8 @@ pub fn series3(f0: Vec3, c: &[Vec3; 3], cos_theta: f32) -> Vec3 {
     let x = cos_theta.clamp(0.0, 1.0);
     let y = 1.0 - x;
     let y2 = y * y;
-    let y6 = y2 * y2 * y2;
-    schlick(f0, 1.0, x) - x * (c[0] * y2 + c[1] * y6 + c[2] * (y6 * y6))
+    let y4 = y2 * y2;
+    schlick(f0, 1.0, x) - (x * y2) * (c[0] + y4 * (c[1] + (y4 * y2) * c[2]))
 }
 
 /// `F* - x (c2 y^2 + c4 y^4 + c8 y^8 + c16 y^16)`, y = 1 - x.
@@ -49,6 +49,5 @@ pub fn series4(f0: Vec3, c: &[Vec3; 4], cos_theta: f32) -> Vec3 {
     let y = 1.0 - x;
     let y2 = y * y;
     let y4 = y2 * y2;
-    let y8 = y4 * y4;
-    schlick(f0, 1.0, x) - x * (c[0] * y2 + c[1] * y4 + c[2] * y8 + c[3] * (y8 * y8))
+    schlick(f0, 1.0, x) - (x * y2) * (c[0] + y2 * (c[1] + y4 * (c[2] + (y4 * y4) * c[3])))
 }

@@ -37,7 +37,8 @@ fn fresnel_schlick(f0: vec3f, f90: f32, cos_theta: f32) -> vec3f {
 fn fresnel_compensated(f0: vec3f, a: vec3f, alpha: vec3f, cos_theta: f32) -> vec3f {
     let x = clamp(cos_theta, 0.0, 1.0);
     let y = 1.0 - x;
-    let power = select(vec3f(0.0), pow(vec3f(max(y, 1e-8)), alpha), y > 0.0);
+    // One logarithm for the three channels; 1e-8 is below the least y that is not 0.
+    let power = select(vec3f(0.0), exp2(alpha * log2(max(y, 1e-8))), y > 0.0);
     return fresnel_schlick(f0, 1.0, x) - x * a * power;
 }
 
@@ -55,7 +56,7 @@ fn fresnel_series2(f0: vec3f, c0: vec3f, c1: vec3f, cos_theta: f32) -> vec3f {
     let y = 1.0 - x;
     let y2 = y * y;
     let y4 = y2 * y2;
-    return fresnel_schlick(f0, 1.0, x) - x * (c0 * (y2 * y) + c1 * (y4 * y4));
+    return fresnel_schlick(f0, 1.0, x) - (x * y2 * y) * (c0 + (y4 * y) * c1);
 }
 
 // F* - x (c0 y^2 + c1 y^6 + c2 y^12).
@@ -63,8 +64,9 @@ fn fresnel_series3(f0: vec3f, c0: vec3f, c1: vec3f, c2: vec3f, cos_theta: f32) -
     let x = clamp(cos_theta, 0.0, 1.0);
     let y = 1.0 - x;
     let y2 = y * y;
-    let y6 = y2 * y2 * y2;
-    return fresnel_schlick(f0, 1.0, x) - x * (c0 * y2 + c1 * y6 + c2 * (y6 * y6));
+    let y4 = y2 * y2;
+    let y6 = y4 * y2;
+    return fresnel_schlick(f0, 1.0, x) - (x * y2) * (c0 + y4 * (c1 + y6 * c2));
 }
 
 // F* - x (c0 y^2 + c1 y^4 + c2 y^8 + c3 y^16).
@@ -73,8 +75,7 @@ fn fresnel_series4(f0: vec3f, c0: vec3f, c1: vec3f, c2: vec3f, c3: vec3f, cos_th
     let y = 1.0 - x;
     let y2 = y * y;
     let y4 = y2 * y2;
-    let y8 = y4 * y4;
-    return fresnel_schlick(f0, 1.0, x) - x * (c0 * y2 + c1 * y4 + c2 * y8 + c3 * (y8 * y8));
+    return fresnel_schlick(f0, 1.0, x) - (x * y2) * (c0 + y2 * (c1 + y4 * (c2 + (y4 * y4) * c3)));
 }
 
 // Exact unpolarised reflectance of one complex index n + ik from vacuum, in the form that keeps its digits in f32.

@@ -99,7 +99,7 @@ pub fn trade(study: &Study, summaries: &[Summary]) -> String {
     let times = summaries.iter().map(|s| s.nanoseconds).filter(|t| *t > 0.0);
     let (least, most) = times.fold((f64::INFINITY, 0.0f64), |(least, most), t| (least.min(t), most.max(t)));
     let (from, to) =
-        (10f64.powf((least.log10() * 4.0 - 0.5).floor() / 4.0), 10f64.powf((most.log10() * 4.0 + 1.0).ceil() / 4.0));
+        (10f64.powf((least.log10() * 4.0 - 0.5).floor() / 4.0), 10f64.powf((most.log10() * 4.0 + 0.6).ceil() / 4.0));
     let mut x = Axis::log("time of one evaluation of R, G and B, ns", from, to);
     x.ticks = steps_125(from, to);
     let y = Axis::log("largest relative error, %", 0.001, 100.0);

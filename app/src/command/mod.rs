@@ -2,6 +2,7 @@
 
 mod compare;
 mod doctor;
+mod fresnel_balls;
 mod fresnel_report;
 mod fresnel_times;
 mod info;
@@ -35,6 +36,8 @@ pub enum Command {
     Compare(compare::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
     Measure(measure::Args),
+    /// Render balls of metals beside one another, one row for each Fresnel form
+    FresnelBalls(fresnel_balls::Args),
     /// Measure what every Fresnel form costs, beside the figures of the dissertation that proposed them
     FresnelTimes(fresnel_times::Args),
     /// Show graphics adapters and libraries, and what is missing
@@ -51,6 +54,7 @@ impl Command {
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),
+            Command::FresnelBalls(args) => fresnel_balls::run(args, out),
             Command::FresnelTimes(args) => fresnel_times::run(args, out),
             Command::Doctor => doctor::run(out),
         }

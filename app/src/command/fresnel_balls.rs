@@ -15,6 +15,7 @@ use burnish_core::surface::fresnel::Form;
 use burnish_render::{Gpu, Renderer, View};
 use glam::{Affine3A, UVec2, Vec3};
 
+use super::render::metal_failure;
 use crate::failure::{Exit, Failure};
 use crate::source;
 use crate::value;
@@ -51,7 +52,7 @@ pub struct Args {
 }
 
 pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let find = |id: &String| preset::find(id).map_err(|e| Failure::usage(format!("--metal {id}: {e}")));
+    let find = |id: &String| preset::find(id).map_err(|e| metal_failure(id, e));
     let metals: Vec<Preset> = args.metal.iter().map(find).collect::<Result<_, _>>()?;
     let (columns, rows) = (metals.len() as u32, args.form.len() as u32);
     let size = args.ball * UVec2::new(columns, rows);

@@ -9,6 +9,7 @@ use burnish_core::surface::fresnel::{Form, Fresnel, exact, grazing_slope};
 use burnish_render::{Gpu, times};
 use serde::Serialize;
 
+use super::render::metal_failure;
 use super::write_json;
 use crate::failure::{Exit, Failure, printable};
 
@@ -66,7 +67,7 @@ struct TimeRow {
 }
 
 pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let metal = preset::find(&args.metal).map_err(|e| Failure::usage(format!("--metal {}: {e}", args.metal)))?;
+    let metal = preset::find(&args.metal).map_err(|e| metal_failure(&args.metal, e))?;
     let errors = PUBLISHED_ERRORS.iter().map(|&(id, published)| error_row(id, published)).collect::<Result<_, _>>()?;
     let (adapter, times) = time_rows(&metal)?;
     let report = Report { errors, adapter, times };

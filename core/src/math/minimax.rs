@@ -103,7 +103,8 @@ fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
         let pivot = (i..n).max_by(|&p, &q| rows[p][i].abs().total_cmp(&rows[q][i].abs()))?;
         rows.swap(i, pivot);
         right.swap(i, pivot);
-        if !(rows[i][i].abs() > 1e-300) {
+        // Not a number is no pivot either.
+        if rows[i][i].abs().partial_cmp(&1e-300) != Some(std::cmp::Ordering::Greater) {
             return None;
         }
         for below in i + 1..n {

@@ -2,6 +2,8 @@
 
 use std::f32::consts::LOG2_E;
 
+use super::bounded;
+
 /// log2 of a positive normal number; absolute error below 3e-7 plus the rounding of the result.
 ///
 /// With x = 2^e m, m in [sqrt(1/2), sqrt 2): log2 m = 2/ln 2 (t + t^3/3 + t^5/5 + t^7/7), t = (m - 1)/(m + 1).
@@ -27,7 +29,7 @@ pub fn exp2(x: f32) -> f32 {
     const LN_2: f32 = std::f32::consts::LN_2;
     // Added and taken off again, 1.5 2^23 leaves the nearest whole number.
     const WHOLE: f32 = 12_582_912.0;
-    let x = x.max(-126.0).min(126.0);
+    let x = bounded(x, -126.0, 126.0);
     let whole = (x + WHOLE) - WHOLE;
     let f = (x - whole) * LN_2;
     let powers = f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0)));

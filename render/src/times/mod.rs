@@ -10,16 +10,16 @@ use crate::shader;
 /// Invocations of a pass.
 const THREADS: u32 = 1 << 16;
 /// Evaluations of an invocation.
-const LOOPS: u32 = 256;
+const LOOPS: u32 = 128;
 /// Rounds over all curves, of which the median counts.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 7;
 /// `FORM_NONE` of the shader.
 const NONE: u32 = 99;
 
 /// Seconds that each curve takes for the three channels at one angle, as one of very many.
 ///
 /// Wall clock from submission to completion of a pass, less that of the same pass without a curve; the curves take
-/// turns, the median of nine rounds counts. On a software adapter this is what the processor takes.
+/// turns, the median of seven rounds counts. On a software adapter this is what the processor takes.
 pub fn evaluation_times(gpu: &Gpu, curves: &[Fresnel]) -> Result<Vec<f64>, GpuError> {
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(shader::TIMES.name),

@@ -148,3 +148,43 @@ pub fn a_report_on_some_metals() {
     burnish(&["presets", "--csv", "x.csv"]).failed(USAGE, &["--table"]);
     burnish(&["presets", "--relative", "2"]).failed(USAGE, &["--relative", "0 to 1"]);
 }
+
+pub fn times_stand_beside_the_published_ones() {
+    let report = burnish(&["fresnel-times", "--json"]).json();
+    let errors = report["errors"].as_array().expect("a list");
+    assert_eq!(errors.len(), 4);
+    for row in errors {
+        // Other measurements than the published ones: the same within a factor of three.
+        let found = row["relative"].as_array().expect("three").iter().filter_map(Value::as_f64).fold(0.0, f64::max);
+        let ratio = found / number(row, "published");
+        assert!((0.3..3.0).contains(&ratio), "{row}");
+    }
+    let times = report["times"].as_array().expect("a list");
+    assert_eq!(times.len(), Form::ALL.len());
+    for row in times {
+        assert!(number(row, "cpu_ns") > 0.0 && number(row, "cpu_relative") > 0.0, "{row}");
+        assert!(row["gpu_ns"].as_f64().is_some_and(|ns| ns >= 0.0), "{row}");
+    }
+    burnish(&["fresnel-times", "--metal", "missing.json"]).failed(INPUT, &["missing.json"]);
+}
+
+pub fn balls_of_chromium_darken_before_the_rim_in_the_forms_that_know_of_it() {
+    let file = scratch_folder("balls").join("balls.exr");
+    let options =
+        ["--even", "--roughness", "0", "--ball", "96", "--metal", "Cr", "--form", "rescaled", "--form", "spectral"];
+    burnish(&[&["fresnel-balls", "--out", text(&file)], &options[..]].concat()).succeeded();
+    let (picture, _) = burnish_core::file::read_picture(&file).expect("a picture");
+    assert_eq!((picture.width, picture.height), (96, 192));
+    // Of a row through the middle of a ball, at a share of its radius (96 pixels are 2.1 radii).
+    let at = |row: u32, share: f32| {
+        let x = (48.0 + share * 48.0 / 1.05) as u32;
+        picture.texels[((48 + 96 * row) * 96 + x) as usize].x
+    };
+    let chromium = preset::find("Cr").expect("a metal");
+    for (row, form) in [Form::Rescaled, Form::Spectral].into_iter().enumerate() {
+        let expected = chromium.fresnel(form).eval(1.0).x;
+        assert!((at(row as u32, 0.0) - expected).abs() < 0.01, "{form}: {} {expected}", at(row as u32, 0.0));
+    }
+    // 72 degrees.
+    assert!(at(0, 0.95) > at(0, 0.0) + 0.03 && at(1, 0.95) < at(0, 0.95) - 0.03, "{} {}", at(0, 0.95), at(1, 0.95));
+}

@@ -52,6 +52,16 @@ fn free_of_the_gpu() -> Vec<Trial> {
 
 fn with_an_adapter() -> Vec<Trial> {
     vec![
+        trial(
+            "times of forms stand beside the published ones",
+            &[Need::Gpu],
+            forms::times_stand_beside_the_published_ones,
+        ),
+        trial(
+            "balls of chromium darken before the rim",
+            &[Need::Gpu],
+            forms::balls_of_chromium_darken_before_the_rim_in_the_forms_that_know_of_it,
+        ),
         trial("doctor finds the adapter", &[Need::Gpu], doctor_finds_the_adapter),
         trial(
             "render writes a png of the asked size that shows the scene",

@@ -8,7 +8,7 @@ use super::schlick;
 pub const EXPONENTS: [&[u32]; 3] = [&[3, 8], &[2, 6, 12], &[2, 4, 8, 16]];
 
 /// `F* - a x (1 - x)^alpha`, F* = [`schlick`] to 1. Lazanyi and Szirmay-Kalos 2005, Fresnel Term Approximations for
-/// Metals, eq. 7. `alpha` is positive; 0 at `cos_theta` = 1 whatever `alpha`, so that F0 stays exact.
+/// Metals. `alpha` is positive; 0 at `cos_theta` = 1 whatever `alpha`, so that F0 stays exact.
 pub fn compensated(f0: Vec3, a: Vec3, alpha: Vec3, cos_theta: f32) -> Vec3 {
     let x = cos_theta.clamp(0.0, 1.0);
     let y = 1.0 - x;
@@ -16,8 +16,8 @@ pub fn compensated(f0: Vec3, a: Vec3, alpha: Vec3, cos_theta: f32) -> Vec3 {
     schlick(f0, 1.0, x) - x * a * power
 }
 
-/// [`compensated`] with the exponent 6 that OpenPBR, Adobe and Blender use. Kutz, Hasan and Edmondson 2021, Novel aspects
-/// of the Adobe Standard Material, section 2.
+/// [`compensated`] with the exponent 6 that OpenPBR, Adobe and Blender use. Kutz et al. 2021, Novel Aspects of the
+/// Adobe Standard Material.
 pub fn f82(f0: Vec3, b: Vec3, cos_theta: f32) -> Vec3 {
     let x = cos_theta.clamp(0.0, 1.0);
     let y = 1.0 - x;

@@ -6,7 +6,7 @@ pub const REFLECTANCE_MAX: f64 = 0.9999;
 /// `(n, k)` of a conductor with reflectance `r` at normal incidence and edge tint `g`, both in [0, 1].
 ///
 /// `n = g (1 - r)/(1 + r) + (1 - g)(1 + sqrt r)/(1 - sqrt r)`, `k^2 = (r (n + 1)^2 - (n - 1)^2)/(1 - r)`; `r` is held at
-/// [`REFLECTANCE_MAX`]. Gulbrandsen 2014, Artist Friendly Metallic Fresnel, eq. 2 to 5. `g` is neither the reflectance at
+/// [`REFLECTANCE_MAX`]. Gulbrandsen 2014, Artist Friendly Metallic Fresnel. `g` is neither the reflectance at
 /// 82 degrees nor a ratio: 0 is the largest n (k = 0), 1 the smallest.
 pub fn gulbrandsen(r: f64, g: f64) -> (f64, f64) {
     let r = if r > 0.0 { r.min(REFLECTANCE_MAX) } else { 0.0 };

@@ -62,7 +62,7 @@ fn roots(f: impl Fn(f64) -> f64) -> Vec<f64> {
     for i in 0..TINTS {
         let (mut a, mut b) = (place(i), place(i + 1));
         let (at_a, at_b) = (f(a), f(b));
-        if !(at_a * at_b <= 0.0) {
+        if at_a * at_b > 0.0 || (at_a * at_b).is_nan() {
             continue;
         }
         for _ in 0..60 {

@@ -168,23 +168,28 @@ pub fn times_stand_beside_the_published_ones() {
     burnish(&["fresnel-times", "--metal", "missing.json"]).failed(INPUT, &["missing.json"]);
 }
 
-pub fn balls_of_chromium_darken_before_the_rim_in_the_forms_that_know_of_it() {
+pub fn balls_in_even_light_show_the_curve_of_every_form() {
     let file = scratch_folder("balls").join("balls.exr");
-    let options =
-        ["--even", "--roughness", "0", "--ball", "96", "--metal", "Cr", "--form", "rescaled", "--form", "spectral"];
-    burnish(&[&["fresnel-balls", "--out", text(&file)], &options[..]].concat()).succeeded();
+    let mut arguments = vec!["fresnel-balls", "--out", text(&file), "--even", "--roughness", "0", "--ball", "64"];
+    arguments.extend(["--metal", "Cr"]);
+    arguments.extend(Form::ALL.iter().flat_map(|form| ["--form", form.id()]));
+    burnish(&arguments).succeeded();
     let (picture, _) = burnish_core::file::read_picture(&file).expect("a picture");
-    assert_eq!((picture.width, picture.height), (96, 192));
-    // Of a row through the middle of a ball, at a share of its radius (96 pixels are 2.1 radii).
-    let at = |row: u32, share: f32| {
-        let x = (48.0 + share * 48.0 / 1.05) as u32;
-        picture.texels[((48 + 96 * row) * 96 + x) as usize].x
-    };
+    assert_eq!((picture.width, picture.height), (64, 64 * Form::ALL.len() as u32));
     let chromium = preset::find("Cr").expect("a metal");
-    for (row, form) in [Form::Rescaled, Form::Spectral].into_iter().enumerate() {
-        let expected = chromium.fresnel(form).eval(1.0).x;
-        assert!((at(row as u32, 0.0) - expected).abs() < 0.01, "{form}: {} {expected}", at(row as u32, 0.0));
+    for (row, form) in Form::ALL.into_iter().enumerate() {
+        let curve = chromium.fresnel(form);
+        // Of the row through the middle; 64 pixels are 2.1 radii. The last pixel is seen under 72 degrees.
+        for x in [32, 40, 48, 56, 60] {
+            let share = (x as f32 + 0.5 - 32.0) / 32.0 * 1.05;
+            let expected = curve.eval((1.0 - share * share).sqrt());
+            let found = picture.texels[(32 + 64 * row) * 64 + x].truncate();
+            // Half a pixel up and the width of a pixel.
+            assert!((found - expected).abs().max_element() < 0.015, "{form} {x}: {found} {expected}");
+        }
     }
-    // 72 degrees.
-    assert!(at(0, 0.95) > at(0, 0.0) + 0.03 && at(1, 0.95) < at(0, 0.95) - 0.03, "{} {}", at(0, 0.95), at(1, 0.95));
+    // The difference that the table tells of is one to be seen: the first row is brighter before its rim.
+    let [rescaled, spectral] = [Form::Rescaled, Form::Spectral].map(|form| form as usize);
+    let at = |row: usize| picture.texels[(32 + 64 * row) * 64 + 60].x;
+    assert!(at(rescaled) > at(spectral) + 0.02, "{} {}", at(rescaled), at(spectral));
 }

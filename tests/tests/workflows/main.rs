@@ -58,9 +58,9 @@ fn with_an_adapter() -> Vec<Trial> {
             forms::times_stand_beside_the_published_ones,
         ),
         trial(
-            "balls of chromium darken before the rim",
+            "balls in even light show the curve of every form",
             &[Need::Gpu],
-            forms::balls_of_chromium_darken_before_the_rim_in_the_forms_that_know_of_it,
+            forms::balls_in_even_light_show_the_curve_of_every_form,
         ),
         trial("doctor finds the adapter", &[Need::Gpu], doctor_finds_the_adapter),
         trial(

@@ -215,6 +215,17 @@ fn the_mean_is_the_cosine_weighted_integral() {
 }
 
 #[test]
+fn the_mean_of_a_dip_has_its_closed_form() {
+    let (f0, a, alpha) = (Vec3::new(0.5, 0.7, 0.9), Vec3::new(0.6, 0.3, -0.1), Vec3::new(3.2, 7.9, 6.0));
+    // 2 int x^2 (1 - x)^alpha dx = 4 / ((alpha + 1)(alpha + 2)(alpha + 3)).
+    let dip = 4.0 * a / ((alpha + 1.0) * (alpha + 2.0) * (alpha + 3.0));
+    let found = Fresnel::Compensated { f0, a, alpha }.mean();
+    assert!((found - (f0 + (1.0 - f0) / 21.0 - dip)).abs().max_element() < 1e-6, "{found}");
+    let found = Fresnel::F82 { f0, b: a }.mean();
+    assert!((found - (f0 + (1.0 - f0) / 21.0 - a / 126.0)).abs().max_element() < 1e-6, "{found}");
+}
+
+#[test]
 fn senseless_input_gives_a_number_in_range() {
     let values = [0.0, -1.0, 1e-30, 1.0, 1e9, f32::MAX, f32::INFINITY, f32::NAN];
     for n in values {

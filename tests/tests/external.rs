@@ -1,4 +1,4 @@
-//! Foreign models and environments: every one loads, or is refused for the reason that it should be.
+//! Foreign models, environments and optical constants: every one loads, or is refused for the reason that it should be.
 //!
 //! The data are not part of the repository. They are looked for as `shared/data` beside it; without them the tests are
 //! ignored, and fail when `BURNISH_REQUIRE` names `data`.
@@ -6,9 +6,10 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use burnish_core::import::optical::{self, Unit};
 use burnish_core::import::{FolderResolver, ImportOptions, load_environment, load_scene, scene_from_bytes};
 use burnish_tests::{Need, data_folder, trial};
-use libtest_mimic::{Arguments, Failed, Trial};
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
 
 /// Radiance HDR keeps 8 bits of mantissa and readers differ in half a step of it.
 const MAX_TOLERANCE: f32 = 0.01;
@@ -50,11 +51,50 @@ fn trials(data: &Path) -> Vec<Trial> {
         trials.push(Trial::test(format!("tangents {name}"), move || tangents(&path)));
     }
     let found = trials.len();
+    trials.extend(optical_constants(&data.join("optical-constants")));
     let listed = counts.len() + maxima.len();
     trials.push(Trial::test("every file of the tables is there", move || {
         if listed > 0 && found >= listed { Ok(()) } else { Err(format!("{found} files, {listed} listed").into()) }
     }));
     trials
+}
+
+/// A trial for each table of n and k.
+fn optical_constants(folder: &Path) -> Vec<Trial> {
+    let tables = files(folder, &["csv"]);
+    // The index lists the others.
+    let tables = tables.into_iter().filter(|path| !path.ends_with("index.csv"));
+    let trials: Vec<Trial> = tables
+        .map(|path| {
+            let name = format!("optical constants {}", key(&path, folder));
+            Trial::test(name, move || same_constants(&path))
+        })
+        .collect();
+    if !trials.is_empty() {
+        return trials;
+    }
+    vec![Trial::ignorable_test("optical constants", || Ok(Completion::ignored_with("no optical constants")))]
+}
+
+/// The import holds the numbers of the file, read here in the plainest way.
+fn same_constants(path: &Path) -> Result<(), Failed> {
+    let imported = optical::read(path, &optical::Options::default())?;
+    let text = std::fs::read_to_string(path)?;
+    let mut rows = Vec::new();
+    for line in text.lines().skip_while(|line| !line.starts_with("wavelength_nm,n,k")).skip(1) {
+        let numbers: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
+        rows.push(numbers?);
+    }
+    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
+    let (preset, report) = (&imported.preset, &imported.report);
+    if (&preset.wavelength_nm, &preset.n, &preset.k) != (&column(0), &column(1), &column(2)) {
+        return Err(format!("{:?} {:?} {:?}", preset.wavelength_nm, preset.n, preset.k).into());
+    }
+    let stem = path.file_stem().unwrap_or_default();
+    if preset.id.as_str() != stem || report.unit != Unit::Nanometre || report.points != rows.len() {
+        return Err(format!("{} {report:?}", preset.id).into());
+    }
+    if report.warnings.is_empty() { Ok(()) } else { Err(format!("{:?}", report.warnings).into()) }
 }
 
 fn model(path: &Path, key: &str, triangles: Option<&str>) -> Result<(), Failed> {

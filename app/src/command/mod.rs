@@ -5,6 +5,7 @@ mod doctor;
 mod fresnel_balls;
 mod fresnel_report;
 mod fresnel_times;
+mod fit;
 mod info;
 mod measure;
 pub mod open;
@@ -30,6 +31,8 @@ pub enum Command {
     Presets(presets::Args),
     /// Write a page on how well Fresnel forms stand for measured metals
     FresnelReport(fresnel_report::Args),
+    /// Read measured optical constants and make a metal preset of them, with every form that renders it
+    Fit(fit::Args),
     /// Write a picture of a document, or of the whole window with it, and compare it with an earlier one
     Snapshot(snapshot::Args),
     /// Measure how different two pictures are
@@ -51,6 +54,7 @@ impl Command {
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
             Command::FresnelReport(args) => fresnel_report::run(args, out),
+            Command::Fit(args) => fit::run(args, out),
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),

@@ -2,7 +2,11 @@
 
 mod comparing;
 mod documents;
+<<<<<<< HEAD
 mod forms;
+=======
+mod fitting;
+>>>>>>> 9a40b7c (burnish fit makes a preset of measured optical constants)
 mod rendering;
 
 use std::ffi::OsString;
@@ -47,6 +51,15 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("info describes a document as it was edited", &[], documents::info_describes_a_document),
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a full disk is exit code 4", &[], a_full_disk),
+        trial("a table of n and k becomes a preset", &[], fitting::a_table_becomes_a_preset_that_renders),
+        trial("a preset is fitted anew into its own file", &[], fitting::a_preset_is_fitted_anew_into_its_own_file),
+        trial(
+            "pairs of spectra and several files are fitted",
+            &[],
+            fitting::a_pair_of_spectra_and_several_files_are_fitted,
+        ),
+        trial("tables that make no sense are refused by line", &[], fitting::tables_that_make_no_sense_are_refused),
+        trial("another preset is not written over", &[], fitting::another_preset_is_not_written_over),
     ]
 }
 

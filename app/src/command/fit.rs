@@ -11,6 +11,7 @@ use burnish_core::surface::fresnel::Form;
 use glam::DVec3;
 use serde::Serialize;
 
+use super::presets::Bounds;
 use super::write_json;
 use crate::failure::{Exit, Failure, printable};
 
@@ -34,24 +35,20 @@ pub struct Args {
     /// Take k with the other sign: for files of n - ik
     #[arg(long)]
     flip_k: bool,
-    /// Largest relative error of a form that will do
-    #[arg(long, default_value = "0.01", value_parser = tolerance)]
-    relative: f64,
-    /// Largest CIEDE2000 on a ball of a form that will do
-    #[arg(long, default_value = "1", value_parser = tolerance)]
-    delta_e: f64,
     /// Print JSON, a list with one entry per file
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    bounds: Bounds,
 }
 
 pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let Args { files, out: target, unit, id, name, flip_k, relative, delta_e, json } = args;
+    let Args { files, out: target, unit, id, name, flip_k, json, bounds } = args;
     if files.len() > 1 && (target.is_some() || id.is_some() || name.is_some()) {
         return Err(Failure::usage("--out, --id and --name are about one file; name one, or leave them away"));
     }
     let options = Options { unit, id, name, flip_k };
-    let tolerance = Tolerance { relative, delta_e };
+    let tolerance = bounds.tolerance();
     let mut fitted = Vec::new();
     let mut messages = Vec::new();
     for file in &files {
@@ -68,12 +65,6 @@ pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
     if messages.is_empty() { Ok(Exit::Ok) } else { Err(Failure { exit: Exit::Input, messages }) }
 }
 
-/// A number above 0, or 0.
-fn tolerance(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
-    number.ok_or_else(|| "it takes a number of 0 or more".into())
-}
-
 /// What came of one file. Reflectances are linear Rec.709 under D65.
 #[derive(Serialize)]
 struct Fitted {
@@ -85,8 +76,8 @@ struct Fitted {
     f0: [f64; 3],
     /// Before it was clamped to 0..1.
     f0_unclamped: [f64; 3],
-    /// CIEDE2000 between the two; absent where nothing was clamped.
-    clip_delta_e: Option<f64>,
+    /// CIEDE2000 between the two, 0 where nothing was clamped.
+    clip_delta_e: f64,
     /// The cheapest first.
     forms: Vec<FormFit>,
     cheapest: Cheapest,
@@ -120,7 +111,7 @@ impl Fitted {
             report,
             f0: f0.clamp(DVec3::ZERO, DVec3::ONE).to_array(),
             f0_unclamped: fits.f0,
-            clip_delta_e: clip(f0).map(|clip| clip.delta_e),
+            clip_delta_e: clip(f0).map_or(0.0, |clip| clip.delta_e),
             forms: Form::ALL.into_iter().filter_map(form_fit).collect(),
             cheapest,
             written: target.map(|path| path.display().to_string()),
@@ -147,8 +138,8 @@ impl Fitted {
         }
         let rgb = |[r, g, b]: &[f64; 3]| format!("{r:.4} {g:.4} {b:.4}");
         writeln!(out, "F0        {} linear Rec.709", rgb(f0_unclamped))?;
-        if let Some(delta_e) = clip_delta_e {
-            writeln!(out, "clamped   {} as it is rendered, ΔE2000 {delta_e:.2}", rgb(f0))?;
+        if f0 != f0_unclamped {
+            writeln!(out, "clamped   {} as it is rendered, ΔE2000 {clip_delta_e:.2}", rgb(f0))?;
         }
         let width = forms.iter().map(|f| f.form.id().len()).max().unwrap_or(0);
         writeln!(out, "{:width$}  largest relative error  absolute  ΔE2000 largest   mean  note", "form")?;
@@ -161,7 +152,7 @@ impl Fitted {
             );
             writeln!(out, "{}", line.trim_end())?;
         }
-        writeln!(out, "cheapest  {}: {}", cheapest.form, cheapest.reason)?;
+        writeln!(out, "cheapest  {}", cheapest.reason)?;
         if let Some(path) = written {
             writeln!(out, "written   {}", printable(path))?;
         }

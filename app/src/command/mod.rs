@@ -2,10 +2,10 @@
 
 mod compare;
 mod doctor;
+mod fit;
 mod fresnel_balls;
 mod fresnel_report;
 mod fresnel_times;
-mod fit;
 mod info;
 mod measure;
 pub mod open;
@@ -29,10 +29,10 @@ pub enum Command {
     Info(info::Args),
     /// List the metal presets, or the errors of their Fresnel forms
     Presets(presets::Args),
-    /// Write a page on how well Fresnel forms stand for measured metals
-    FresnelReport(fresnel_report::Args),
     /// Read measured optical constants and make a metal preset of them, with every form that renders it
     Fit(fit::Args),
+    /// Write a page on how well Fresnel forms stand for measured metals
+    FresnelReport(fresnel_report::Args),
     /// Write a picture of a document, or of the whole window with it, and compare it with an earlier one
     Snapshot(snapshot::Args),
     /// Measure how different two pictures are
@@ -53,8 +53,8 @@ impl Command {
             Command::Render(args) => render::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
-            Command::FresnelReport(args) => fresnel_report::run(args, out),
             Command::Fit(args) => fit::run(args, out),
+            Command::FresnelReport(args) => fresnel_report::run(args, out),
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),

@@ -6,7 +6,7 @@ use std::path::Path;
 use burnish_tests::{repository, scratch_folder};
 use serde_json::Value;
 
-use super::{INPUT, USAGE, burnish, text};
+use crate::{INPUT, USAGE, burnish, text};
 
 /// Gold, rows of P. B. Johnson and R. W. Christy, Phys. Rev. B 6, 4370 (1972): um, n, k.
 const GOLD: &str = "0.3679 1.48 1.895\n0.3974 1.47 1.952\n0.4133 1.46 1.958\n0.4305 1.45 1.948\n0.4509 1.38 1.914\n\
@@ -97,7 +97,7 @@ pub fn tables_that_make_no_sense_are_refused() {
     write(&table, GOLD);
     burnish(&["fit", text(&table), "--unit", "eV"]).failed(INPUT, &["Au.csv", "if the unit is wrong, say --unit um"]);
     burnish(&["fit", text(&table), "--unit", "inch"]).failed(USAGE, &["--unit", "nm, um, A (angstrom) and eV"]);
-    burnish(&["fit", text(&table), "--relative", "-1"]).failed(USAGE, &["--relative", "0 or more"]);
+    burnish(&["fit", text(&table), "--relative", "2"]).failed(USAGE, &["--relative", "0 to 1"]);
     burnish(&["fit", text(&table), text(&table), "--id", "x"]).failed(USAGE, &["--id", "one file"]);
     burnish(&["fit", text(&table), "--id", "a/b"]).failed(INPUT, &["field `id` is `a/b`"]);
     burnish(&["fit"]).failed(USAGE, &["FILE"]);

@@ -2,11 +2,8 @@
 
 mod comparing;
 mod documents;
-<<<<<<< HEAD
-mod forms;
-=======
 mod fitting;
->>>>>>> 9a40b7c (burnish fit makes a preset of measured optical constants)
+mod forms;
 mod rendering;
 
 use std::ffi::OsString;

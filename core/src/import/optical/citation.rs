@@ -99,8 +99,11 @@ fn author_and_title(before: &str) -> (String, String) {
     (without_point(&text), String::new())
 }
 
+/// Without the point at the end, unless it belongs to an initial.
 fn without_point(text: &str) -> String {
-    text.trim_end_matches('.').into()
+    let bare = text.trim_end_matches('.');
+    let initial = bare.rsplit([' ', '-', '.']).next().is_some_and(|word| word.chars().count() == 1);
+    if initial { text.into() } else { bare.into() }
 }
 
 /// The last year in parentheses, and where its parenthesis opens.
@@ -194,9 +197,10 @@ mod tests {
     }
 
     #[test]
-    fn a_doi_keeps_its_parentheses() {
-        let s = source("A. Bee.\nT.\n[*J.* **1** (1970)](https://doi.org/10.1016/0022-3093(70)90123-X)");
+    fn a_doi_keeps_its_parentheses_and_an_initial_its_point() {
+        let s = source("Bee, A.\nT.\n[*J.* **1** (1970)](https://doi.org/10.1016/0022-3093(70)90123-X)");
         assert_eq!(s.doi.as_deref(), Some("10.1016/0022-3093(70)90123-X"));
+        assert_eq!(s.author.as_deref(), Some("Bee, A."));
     }
 
     #[test]

@@ -41,8 +41,23 @@ const DERIVED: &[&str] =
     &["err", "error", "std", "sigma", "unc", "uncertainty", "delta", "eps", "epsilon", "absorption", "group"];
 
 /// Units and quantities that are not read.
-const FOREIGN: &[&str] =
-    &["m", "mm", "cm", "pm", "hz", "thz", "ghz", "mev", "kev", "j", "cm1", "wavenumber", "frequency", "omega"];
+const FOREIGN: &[&str] = &[
+    "m",
+    "mm",
+    "cm",
+    "pm",
+    "hz",
+    "thz",
+    "ghz",
+    "mev",
+    "kev",
+    "j",
+    "cm1",
+    "wavenumber",
+    "number",
+    "frequency",
+    "omega",
+];
 
 /// Words without a meaning of their own, by which a header with blanks between columns is divided.
 const FILLER: &[&str] = &["photon", "index", "coefficient", "of", "part", "in", "vacuum", "the"];
@@ -153,6 +168,7 @@ mod tests {
         );
         assert!(matches!(roles(&["wavenumber (cm-1)", "n"])[0], Role::Foreign(_)));
         assert!(matches!(roles(&["Wavelength (m)", "n"])[0], Role::Foreign(_)));
+        assert!(matches!(roles(&["wave number", "n"])[0], Role::Foreign(_)));
         assert!(matches!(roles(&["energy_keV", "n"])[0], Role::Foreign(_)));
         assert_eq!(roles(&["eps1", "Re(eps)"])[1], Role::Other);
     }

@@ -7,8 +7,7 @@ use serde::Serialize;
 
 use crate::material::preset::REQUIRED_RANGE_NM;
 
-/// Planck's constant times the speed of light, eV nm: `wavelength = HC_EV_NM / energy` (CODATA 2018, both exact by
-/// definition since 2019).
+/// Planck's constant times the speed of light, eV nm: `wavelength = HC_EV_NM / energy`. BIPM 2019, to ten digits.
 pub const HC_EV_NM: f64 = 1_239.841_984;
 
 /// Unit of the first column of a table.
@@ -144,6 +143,12 @@ mod tests {
         // The photon energy of 620 nm is 2 eV, nearly.
         assert_eq!(Unit::ElectronVolt.nm(2.0), 619.920_992);
         assert_eq!(Unit::ElectronVolt.range_nm((1.0, 2.0)), (619.920_992, 1_239.841_984));
+    }
+
+    #[test]
+    fn the_wavelength_of_an_electronvolt_follows_from_the_constants_of_the_si() {
+        let (h, c, e): (f64, f64, f64) = (6.626_070_15e-34, 299_792_458.0, 1.602_176_634e-19);
+        assert!((h * c / e * 1e9 / HC_EV_NM - 1.0).abs() < 5e-10);
     }
 
     #[test]

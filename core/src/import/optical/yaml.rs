@@ -49,6 +49,8 @@ pub(super) fn read(text: &str, file: &str, stem: &str, log: &mut Log) -> Draft {
 #[derive(Debug, Default)]
 struct Item {
     line: usize,
+    /// Those that were read.
+    keys: Vec<String>,
     kind: String,
     rows: Vec<(usize, Vec<f64>)>,
     coefficients: Vec<f64>,
@@ -138,6 +140,11 @@ impl<'a> Reader<'a> {
         let Some((key, value)) = key_and_value(entry) else {
             return self.fault(number, format!("{} is no key with a value", quoted(entry)), LAYOUT);
         };
+        let keys = &mut self.items.last_mut()?.keys;
+        if keys.iter().any(|known| known == key) {
+            return self.fault(number, format!("`{key}` stands there twice"), "keep one of the two");
+        }
+        keys.push(key.into());
         if key == "data" {
             if !matches!(value.split_whitespace().next(), Some("|" | "|-" | "|+")) {
                 return self.fault(number, "`data` is not followed by `|` and a row in each line below", LAYOUT);

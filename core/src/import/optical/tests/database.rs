@@ -120,6 +120,7 @@ fn a_file_that_is_not_laid_out_so_is_refused_by_line() {
     refused(&nk.replace("tabulated nk", "tabulated n2"), &["line 11: the type 'tabulated n2' is not read"]);
     refused(&nk.replace("tabulated nk", "&a tabulated nk"), &["line 11: the type"]);
     refused(&nk.replace("tabulated nk", "\"tabulated nk"), &["quote after type is not closed"]);
+    refused(&(nk.to_string() + "    type: tabulated n\n"), &["line 15: `type` stands there twice"]);
     refused("  - type: tabulated nk\n", &["line 11: `tabulated nk` has no rows"]);
 }
 

@@ -13,6 +13,9 @@ const VISIBLE_NM: std::ops::RangeInclusive<f64> = 380.0..=780.0;
 /// What is kept of a table, nm, with one entry more beyond each end.
 const KEPT_NM: std::ops::RangeInclusive<f64> = 300.0..=1000.0;
 
+/// Entries of a preset: with 20 characters a number its file stays below the limit for preset files.
+const MAX_POINTS: usize = 50_000;
+
 /// Wider steps in the visible range than this many nm are warned of.
 const WIDE_GAP_NM: f64 = 100.0;
 
@@ -76,6 +79,11 @@ impl Draft {
             return None;
         }
         let table = self.trimmed(table, log);
+        if table.nm.len() > MAX_POINTS {
+            let reason = format!("has {} entries from 300 to 1000 nm, over the limit of {MAX_POINTS}", table.nm.len());
+            log.fault(&self.n.file, None, reason, "thin the table out");
+            return None;
+        }
         warn_of_gaps(&self.n.file, &table.nm, log);
         let report = ImportReport {
             format: self.format,

@@ -100,6 +100,8 @@ fn limits_are_named() {
     refused(&format!("400 1 {}\n", "2".repeat(MAX_LINE_CHARS)), &["line 1: has more than 10000 characters"]);
     let rows: String = (0..=MAX_ROWS).map(|i| format!("{i} 1 2\n")).collect();
     refused(&rows, &["more than 200000 rows", "thin the table out"]);
+    let fine: String = (0..50_010).map(|i| format!("{} 1 2\n", 350.0 + 0.01 * f64::from(i))).collect();
+    refused(&fine, &["has 50010 entries from 300 to 1000 nm", "thin the table out"]);
     refused(&" ".repeat(MAX_BYTES + 1), &["over the limit of 16777216"]);
 }
 

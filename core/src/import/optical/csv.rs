@@ -249,16 +249,14 @@ impl Reader<'_> {
             return Some(());
         }
         let Some(at) = self.number(line, fields, plan.at) else { return Some(()) };
-        for (column, quantity) in [(plan.n, 0), (plan.k, 1), (plan.unnamed, 2)] {
-            let Some(column) = column else { continue };
-            let Some(value) = self.number(line, fields, column) else { continue };
-            let samples = match quantity {
-                0 => &mut self.found.n,
-                1 => &mut self.found.k,
-                _ => &mut self.found.unnamed,
-            };
-            samples.push(Sample { line, at, value });
-        }
+        let mut sample = |column: Option<usize>| {
+            let value = self.number(line, fields, column?)?;
+            Some(Sample { line, at, value })
+        };
+        let (n, k, unnamed) = (sample(plan.n), sample(plan.k), sample(plan.unnamed));
+        self.found.n.extend(n);
+        self.found.k.extend(k);
+        self.found.unnamed.extend(unnamed);
         Some(())
     }
 

@@ -44,46 +44,13 @@ pub(super) struct Draft {
 impl Draft {
     /// Checks and converts. `None` when there is a fault in the log.
     pub fn finish(mut self, options: &Options, log: &mut Log) -> Option<Imported> {
-        if self.n.samples.is_empty() && !log.failed() {
-            log.fault(&self.n.file, None, "holds no rows of numbers", "give rows of wavelength, n and k");
-        }
-        check_values(&self.n, log);
         if options.flip_k {
             self.k.samples.iter_mut().for_each(|s| s.value = 0.0 - s.value);
             log.note(&self.k.file, None, "the sign of k was flipped, as asked for");
         }
-        check_signs(&self.k, log);
-        let (unit, unit_origin) = self.unit(options, log)?;
-        let n = ordered(&self.n, unit, log);
-        // What is wrong with the first column of a row is said once.
-        let k = if self.n.shares_rows(&self.k) {
-            ordered(&self.k, unit, &mut Log::default())
-        } else {
-            ordered(&self.k, unit, log)
-        };
-        if log.failed() {
-            return None;
-        }
-        if self.k.samples.is_empty() {
-            log.warn(&self.n.file, None, "gives n alone; k is 0: a dielectric, not a metal");
-        } else if self.k.samples.iter().all(|s| s.value == 0.0) {
-            log.warn(&self.k.file, None, NOT_A_METAL);
-        }
-        let table = joined(n, k);
-        if table.nm.is_empty() {
-            log.fault(&self.n.file, None, "n and k have no wavelength in common", "give both over the same range");
-        }
-        let range_nm = (*table.nm.first()?, *table.nm.last()?);
-        self.check_range(&table, range_nm, log);
-        if log.failed() {
-            return None;
-        }
-        let table = self.trimmed(table, log);
-        if table.nm.len() > MAX_POINTS {
-            let reason = format!("has {} entries from 300 to 1000 nm, over the limit of {MAX_POINTS}", table.nm.len());
-            log.fault(&self.n.file, None, reason, "thin the table out");
-            return None;
-        }
+        let (table, unit, unit_origin) = self.table(options, log)?;
+        let range_nm = self.check_range(&table, log)?;
+        let table = self.trimmed(table, log)?;
         warn_of_gaps(&self.n.file, &table.nm, log);
         let report = ImportReport {
             format: self.format,
@@ -106,6 +73,29 @@ impl Draft {
                 None
             }
         }
+    }
+
+    /// Sound values of n and k at the same wavelengths, the unit that they were in, and how it is known.
+    fn table(&self, options: &Options, log: &mut Log) -> Option<(Table, Unit, UnitOrigin)> {
+        if self.n.samples.is_empty() && !log.failed() {
+            log.fault(&self.n.file, None, "holds no rows of numbers", "give rows of wavelength, n and k");
+        }
+        check_values(&self.n, log);
+        check_signs(&self.k, log);
+        let (unit, origin) = self.unit(options, log)?;
+        let n = ordered(&self.n, unit, log);
+        // What is wrong with the first column of a row is said once.
+        let mut said = Log::default();
+        let k = ordered(&self.k, unit, if self.n.shares_rows(&self.k) { &mut said } else { log });
+        if log.failed() {
+            return None;
+        }
+        if self.k.samples.is_empty() {
+            log.warn(&self.n.file, None, "gives n alone; k is 0: a dielectric, not a metal");
+        } else if self.k.samples.iter().all(|s| s.value == 0.0) {
+            log.warn(&self.k.file, None, NOT_A_METAL);
+        }
+        Some((joined(n, k), unit, origin))
     }
 
     /// True when the values alone would be taken for nm.
@@ -150,11 +140,15 @@ impl Draft {
         range.0.is_finite().then_some(range)
     }
 
-    /// Refuses tables that leave part of the visible range out.
-    fn check_range(&self, table: &Table, (from, to): (f64, f64), log: &mut Log) {
+    /// First and last wavelength of a table, nm, that leaves no part of the visible range out.
+    fn check_range(&self, table: &Table, log: &mut Log) -> Option<(f64, f64)> {
         let (file, count) = (&self.n.file, table.nm.len());
         let (need_from, need_to) = REQUIRED_RANGE_NM;
         let visible = visible_points(&table.nm);
+        let (Some(&from), Some(&to)) = (table.nm.first(), table.nm.last()) else {
+            log.fault(file, None, "n and k have no wavelength in common", "give both over the same range");
+            return None;
+        };
         if count < 2 {
             log.fault(file, None, format!("holds n and k at {count} wavelength"), "a curve needs two points or more");
         } else if from > need_from || to < need_to {
@@ -162,9 +156,11 @@ impl Draft {
             let reason = format!("covers {from} to {to} nm{seen}; {need_from} to {need_to} nm are needed");
             log.fault(file, None, reason, &self.other_units());
         } else if visible < 2 {
-            let reason = format!("has {visible} points from 380 to 780 nm");
+            let points = if visible == 1 { "1 point" } else { "no point" };
+            let reason = format!("has {points} from 380 to 780 nm");
             log.fault(file, None, reason, "take a table with more points in the visible range");
         }
+        (!log.failed()).then_some((from, to))
     }
 
     /// The remedy for a range that does not fit: units in which the values would fit.
@@ -178,8 +174,8 @@ impl Draft {
         }
     }
 
-    /// Entries from 300 to 1000 nm and one beyond each end.
-    fn trimmed(&self, table: Table, log: &mut Log) -> Table {
+    /// Entries from 300 to 1000 nm and one beyond each end, if they are not too many.
+    fn trimmed(&self, table: Table, log: &mut Log) -> Option<Table> {
         let Table { nm, n, k } = table;
         let first = nm.partition_point(|w| w < KEPT_NM.start()).saturating_sub(1);
         let end = (nm.partition_point(|w| w <= KEPT_NM.end()) + 1).min(nm.len());
@@ -190,7 +186,12 @@ impl Draft {
             let text = format!("{dropped} entries outside of {from} to {to} nm were left out; no light is seen there");
             log.note(&self.n.file, None, text);
         }
-        table
+        if table.nm.len() > MAX_POINTS {
+            let reason = format!("has {} entries from 300 to 1000 nm, over the limit of {MAX_POINTS}", table.nm.len());
+            log.fault(&self.n.file, None, reason, "thin the table out");
+            return None;
+        }
+        Some(table)
     }
 
     fn preset(self, table: Table, report: &ImportReport, options: &Options) -> Preset {

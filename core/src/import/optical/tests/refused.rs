@@ -51,7 +51,7 @@ fn a_range_that_does_not_fit_is_refused_with_the_unit_that_would_fit() {
     refused("410 1 2\n780 1 2\n", &["covers 410 to 780 nm; 400 to 700 nm are needed"]);
     refused("3800 1 2\n5000 1 2\n7800 1 2\n", &["nothing of the visible range", "--unit A"]);
     refused("wl_um n k\n380 1 2\n500 1 2\n780 1 2\n", &["if the unit is wrong, say --unit nm"]);
-    refused("300 1 2\n550 1 2\n800 1 2\n", &["has 1 points from 380 to 780 nm"]);
+    refused("300 1 2\n550 1 2\n800 1 2\n", &["has 1 point from 380 to 780 nm"]);
     refused("500 1 2\n", &["holds n and k at 1 wavelength"]);
     refused("20 1 2\n500 1 2\n780 1 2\n", &["names no unit", "20 to 780", "--unit nm|um|eV"]);
     refused("wl,n\n0.3,1\n0.4,1\nwl,k\n0.5,1\n0.8,1\n", &["no wavelength in common"]);

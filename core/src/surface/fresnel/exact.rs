@@ -90,7 +90,7 @@ pub fn f0(n: f32, k: f32) -> f32 {
 /// Cosine-weighted mean of any curve, by quadrature in the square root of the cosine, where grazing curves are smooth.
 pub(super) fn mean(fresnel: &Fresnel) -> Vec3 {
     let mut sum = DVec3::ZERO;
-    for &(t, weight) in GaussLegendre::new(64).nodes() {
+    for &(t, weight) in GaussLegendre::new(128).nodes() {
         let x = t * t;
         sum += 4.0 * weight * x * t * fresnel.eval(x as f32).as_dvec3();
     }

@@ -13,6 +13,8 @@ pub enum Icon {
     Star,
     /// No favourite yet.
     StarOutline,
+    /// An exclamation mark in a triangle: something speaks against it.
+    Warning,
 }
 
 /// A button with a sign. `name` is read out and shown on hover.
@@ -39,7 +41,18 @@ pub fn paint(painter: &Painter, icon: Icon, center: Pos2, radius: f32, color: Co
         Icon::Reset => reset(painter, center, radius, color),
         Icon::Star => star(painter, center, radius, color, Stroke::NONE),
         Icon::StarOutline => star(painter, center, radius, Color32::TRANSPARENT, Stroke::new(1.0, color)),
+        Icon::Warning => warning(painter, center, radius, color),
     }
+}
+
+/// The mark is cut out dark: the sign reads without its colour.
+fn warning(painter: &Painter, center: Pos2, radius: f32, color: Color32) {
+    let corner = |x: f32, y: f32| center + radius * vec2(x, y);
+    let triangle = vec![corner(0.0, -1.1), corner(1.15, 0.9), corner(-1.15, 0.9)];
+    painter.add(Shape::convex_polygon(triangle, color, Stroke::new(0.22 * radius, Color32::from_black_alpha(160))));
+    let mark = Stroke::new(0.3 * radius, Color32::BLACK);
+    painter.line_segment([corner(0.0, -0.4), corner(0.0, 0.25)], mark);
+    painter.circle_filled(corner(0.0, 0.6), 0.18 * radius, Color32::BLACK);
 }
 
 /// Three quarters of a circle, counter-clockwise, with a head.

@@ -38,6 +38,9 @@ const RADIUS: f32 = 0.97;
 const MASK: f32 = 0.94;
 /// Seconds without input after which balls are drawn.
 const QUIET_SECS: f64 = 0.3;
+/// Balls that are with the worker at a time: enough that it does not wait for the next frame, few enough that what was
+/// scrolled away soon makes room.
+const UNDER_WAY: usize = 3;
 
 /// What is on a ball.
 #[derive(Clone, Debug)]
@@ -77,7 +80,11 @@ impl Subject {
 pub struct Thumbnails {
     folder: Option<PathBuf>,
     worker: Option<Worker>,
-    balls: HashMap<String, Option<TextureHandle>>,
+    balls: HashMap<String, TextureHandle>,
+    /// What the last frame asked for and did not get, in its order.
+    asked: Vec<Arc<Subject>>,
+    /// Hashes of what the worker was told to draw.
+    under_way: Vec<String>,
     /// The worker ended early: what it was asked for does not come.
     failed: bool,
 }
@@ -101,29 +108,44 @@ impl Thumbnails {
         let Some(passes) = passes else {
             self.worker = None;
             self.balls.clear();
+            self.asked.clear();
+            self.under_way.clear();
             return None;
         };
         if !self.worker.as_ref().is_some_and(|worker| Arc::ptr_eq(&worker.passes, passes)) {
-            // Balls that an earlier device did not get done are asked for again.
-            self.balls.retain(|_, ball| ball.is_some());
+            // What an earlier device did not get done is asked for again.
+            self.under_way.clear();
             self.failed = false;
             self.worker = Some(Worker::start(passes, self.folder.clone(), ctx));
         }
+        let fault = self.take_drawn(ctx);
         let worker = self.worker.as_ref()?;
         let active = ctx.input(|input| {
             input.pointer.any_down() || f64::from(input.pointer.time_since_last_movement()) < QUIET_SECS
         });
         worker.busy.store(active || !rests, Ordering::Relaxed);
-        if active && self.balls.values().any(Option::is_none) {
+        for subject in std::mem::take(&mut self.asked) {
+            self.ask(&subject);
+        }
+        // The list of this frame is made by this frame.
+        self.asked.clear();
+        if active && self.is_drawing() {
             // Without another frame nobody would notice that the hand came to rest.
             ctx.request_repaint_after_secs(QUIET_SECS as f32);
         }
+        fault
+    }
+
+    /// Makes textures of what the worker finished. Returns why it ended.
+    fn take_drawn(&mut self, ctx: &egui::Context) -> Option<String> {
+        let worker = self.worker.as_ref()?;
         let mut fault = None;
         while let Ok(drawn) = worker.drawn.try_recv() {
             match drawn {
                 Ok((hash, image)) => {
                     let texture = ctx.load_texture(format!("ball {hash}"), image, TextureOptions::LINEAR);
-                    self.balls.insert(hash, Some(texture));
+                    self.under_way.retain(|known| *known != hash);
+                    self.balls.insert(hash, texture);
                 }
                 Err(words) => {
                     self.failed = true;
@@ -136,18 +158,29 @@ impl Thumbnails {
 
     /// Balls were asked for and are on their way.
     pub fn is_drawing(&self) -> bool {
-        self.worker.is_some() && !self.failed && self.balls.values().any(Option::is_none)
+        self.worker.is_some() && !self.failed && !(self.under_way.is_empty() && self.asked.is_empty())
     }
 
-    /// The ball of a subject; `None` until it is drawn.
+    /// The ball of a subject that is seen in this frame; `None` until it is drawn. What is no longer asked for is not
+    /// drawn, so that a long list costs what is seen of it.
     pub fn get(&mut self, subject: &Arc<Subject>) -> Option<&TextureHandle> {
-        let worker = self.worker.as_ref()?;
-        let ball = self.balls.entry(subject.hash.clone()).or_insert_with(|| {
-            // A worker that ended has told why.
-            let _ = worker.wanted.send(subject.clone());
-            None
-        });
-        ball.as_ref()
+        self.worker.as_ref()?;
+        if !self.balls.contains_key(&subject.hash) {
+            self.ask(subject);
+        }
+        self.balls.get(&subject.hash)
+    }
+
+    /// Hands a subject to the worker if it has room, else notes it for the next frame.
+    fn ask(&mut self, subject: &Arc<Subject>) {
+        let known = self.under_way.contains(&subject.hash) || self.balls.contains_key(&subject.hash);
+        let Some(worker) = self.worker.as_ref().filter(|_| !known && !self.failed) else { return };
+        if self.under_way.len() >= UNDER_WAY {
+            return self.asked.push(subject.clone());
+        }
+        self.under_way.push(subject.hash.clone());
+        // A worker that ended has told why.
+        let _ = worker.wanted.send(subject.clone());
     }
 }
 

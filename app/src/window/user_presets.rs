@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burnish_core::document::Assigned;
-use burnish_core::file::write_atomic;
 use burnish_core::job::{Job, Outcome};
-use burnish_core::material::preset::{self, Preset};
+use burnish_core::material::preset::{self, Fits, Preset};
 use burnish_core::material::saved::{self, SavedMaterial};
 use eframe::egui;
+use rayon::prelude::*;
 
 use super::request::{Request, Requests};
 
@@ -49,23 +49,40 @@ pub struct Listing {
 enum Task {
     Read,
     Import(PathBuf),
+    /// A metal that was looked at before.
+    Add {
+        metal: Box<Preset>,
+        assign: bool,
+    },
     Save(Box<SavedMaterial>),
-    Rename { path: PathBuf, name: String },
+    Rename {
+        path: PathBuf,
+        name: String,
+    },
     Remove(PathBuf),
 }
 
 /// What became of it.
 #[derive(Clone, Debug, PartialEq)]
 enum Event {
-    /// A preset came in; the key by which it is assigned.
-    Imported(String),
+    /// A preset came in.
+    Imported(Arrival),
     /// One came in under another name, since its own was taken.
     ImportedAs {
-        key: String,
+        arrival: Arrival,
         notice: String,
     },
     Notice(String),
     Error(String),
+}
+
+/// A preset that came in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrival {
+    /// By which it is assigned.
+    pub key: String,
+    /// It shall be put on the selected materials.
+    pub assign: bool,
 }
 
 impl UserPresets {
@@ -85,6 +102,11 @@ impl UserPresets {
         self.waiting.push_back(Task::Import(path));
     }
 
+    /// Keeps a metal that was read and checked.
+    pub fn add(&mut self, metal: Preset, assign: bool) {
+        self.waiting.push_back(Task::Add { metal: Box::new(metal), assign });
+    }
+
     /// Keeps a material, under a name with a number where its own is taken.
     pub fn save(&mut self, material: SavedMaterial) {
         self.waiting.push_back(Task::Save(Box::new(material)));
@@ -100,8 +122,8 @@ impl UserPresets {
         self.waiting.push_back(Task::Remove(path.into()));
     }
 
-    /// Takes over what jobs did and starts the next; once a frame. Returns keys of presets that came in.
-    pub fn frame(&mut self, ctx: &egui::Context, requests: &mut Requests) -> Vec<String> {
+    /// Takes over what jobs did and starts the next; once a frame. Returns the presets that came in.
+    pub fn frame(&mut self, ctx: &egui::Context, requests: &mut Requests) -> Vec<Arrival> {
         let mut imported = Vec::new();
         match self.running.as_mut().map(Job::poll) {
             None | Some(Outcome::Running) => {}
@@ -117,9 +139,9 @@ impl UserPresets {
                 self.listing = Arc::new(listing);
                 for event in events {
                     match event {
-                        Event::Imported(key) => imported.push(key),
-                        Event::ImportedAs { key, notice } => {
-                            imported.push(key);
+                        Event::Imported(arrival) => imported.push(arrival),
+                        Event::ImportedAs { arrival, notice } => {
+                            imported.push(arrival);
                             requests.push(Request::Notice(notice));
                         }
                         Event::Notice(text) => requests.push(Request::Notice(text)),
@@ -137,9 +159,10 @@ impl UserPresets {
             };
             let ctx = ctx.clone();
             let wake = move || ctx.request_repaint();
+            let before = self.listing.clone();
             self.running = Some(Job::spawn("Presets", wake, move |_| {
                 let event = task.run(&folder);
-                (Listing::read(&folder), event.into_iter().collect())
+                (Listing::read(&folder).fitted(&before), event.into_iter().collect())
             }));
         }
         imported
@@ -151,7 +174,40 @@ pub fn key_of(material: &SavedMaterial) -> String {
     format!("material:{}", material.name)
 }
 
+/// Gives a metal numbers and errors of its forms where it has none of its table; takes a tenth of a second then. Not
+/// for the thread of the window.
+pub fn fit(metal: &mut Preset) {
+    if !metal.fits.as_ref().is_some_and(|fits| fits.belong_to(metal)) {
+        metal.fits = Some(Fits::new(metal));
+    }
+}
+
+/// The same metal but for what can be made again.
+fn alike(a: &Preset, b: &Preset) -> bool {
+    let bare = |metal: &Preset| Preset { fits: None, ..metal.clone() };
+    bare(a) == bare(b)
+}
+
 impl Listing {
+    /// With the fits of every metal. Files without them are those that people put into the folder.
+    fn fitted(mut self, before: &Listing) -> Listing {
+        self.metals.par_iter_mut().for_each(|(path, metal)| {
+            let known = before.metals.iter().find(|(other, known)| other == path && alike(known, metal));
+            match known {
+                Some((_, known)) => *metal = known.clone(),
+                None => fit(Arc::make_mut(metal)),
+            }
+        });
+        self.materials.par_iter_mut().for_each(|(_, material)| {
+            if material.constants().is_some()
+                && let Some(metal) = Arc::make_mut(material).metal.as_mut().and_then(|metal| metal.constants.as_mut())
+            {
+                fit(metal);
+            }
+        });
+        self
+    }
+
     fn read(folder: &Path) -> Listing {
         let mut listing = Listing::default();
         for path in files(&metals_folder(folder)) {
@@ -208,6 +264,7 @@ impl Task {
         let done = match self {
             Task::Read => return None,
             Task::Import(path) => import(&path, folder),
+            Task::Add { metal, assign } => import_metal(*metal, assign, folder),
             Task::Save(material) => save(&material, folder).map(|(_, notice)| Event::Notice(notice)),
             Task::Rename { path, name } => rename(&path, &name, folder).map(Event::Notice),
             Task::Remove(path) => remove(&path, folder).map(Event::Notice),
@@ -220,14 +277,17 @@ fn import(path: &Path, folder: &Path) -> Result<Event, String> {
     match Preset::read(path) {
         Ok(metal) => {
             own_id(&metal, path)?;
-            import_metal(metal, folder)
+            import_metal(metal, true, folder)
         }
         // A saved material is told from a metal by its fields; the message is that of what it says to be.
         Err(fault) => match SavedMaterial::read(path) {
             Ok(material) => {
                 let (kept, notice) = save(&material, folder)?;
-                let key = key_of(&kept);
-                Ok(if kept.name == material.name { Event::Imported(key) } else { Event::ImportedAs { key, notice } })
+                let arrival = Arrival { key: key_of(&kept), assign: true };
+                Ok(match kept.name == material.name {
+                    true => Event::Imported(arrival),
+                    false => Event::ImportedAs { arrival, notice },
+                })
             }
             Err(saved::SavedError::Json { .. }) => Err(fault.to_string()),
             Err(saved::SavedError::Field { field, .. }) if field == "format" => Err(fault.to_string()),
@@ -236,24 +296,26 @@ fn import(path: &Path, folder: &Path) -> Result<Event, String> {
     }
 }
 
-/// Copies a metal; one that is there already stays alone, another of its id is never written over.
-fn import_metal(metal: Preset, folder: &Path) -> Result<Event, String> {
+/// Keeps a metal with its fits; one that is there already stays alone, another of its id is never written over.
+fn import_metal(mut metal: Preset, assign: bool, folder: &Path) -> Result<Event, String> {
     let known = Listing::read(folder).metals;
-    if known.iter().any(|(_, known)| **known == metal) {
-        return Ok(Event::Imported(metal.id));
+    if known.iter().any(|(_, known)| alike(known, &metal)) {
+        return Ok(Event::Imported(Arrival { key: metal.id, assign }));
     }
+    fit(&mut metal);
     let file = |id: &str| metals_folder(folder).join(format!("{id}.json"));
     let built_in = |id: &str| preset::library().iter().any(|known| known.id == id);
     let taken = |id: &str| built_in(id) || file(id).exists() || known.iter().any(|(_, known)| known.id == id);
     if !taken(&metal.id) {
         write(&file(&metal.id), &metal)?;
-        return Ok(Event::Imported(metal.id));
+        return Ok(Event::Imported(Arrival { key: metal.id, assign }));
     }
     let key = preset::numbered_id(&metal.id, taken);
-    let notice = format!("You have another metal with the id `{}`; the new one got the id `{key}`", metal.id);
+    let whose = if built_in(&metal.id) { "Burnish has" } else { "You have" };
+    let notice = format!("{whose} another metal with the id `{}`; the new one got the id `{key}`", metal.id);
     let metal = Preset { id: key.clone(), ..metal };
     write(&file(&key), &metal)?;
-    Ok(Event::ImportedAs { key, notice })
+    Ok(Event::ImportedAs { arrival: Arrival { key, assign }, notice })
 }
 
 /// Writes a material into a new file, under a name that is free. Returns it as it is kept, and what to tell.
@@ -330,8 +392,7 @@ fn make(folder: &Path) -> Result<(), String> {
 
 fn write(path: &Path, metal: &Preset) -> Result<(), String> {
     path.parent().map_or(Ok(()), make)?;
-    let text = serde_json::to_string_pretty(metal).map_err(|e| e.to_string())?;
-    write_atomic(path, format!("{text}\n").as_bytes()).map_err(|e| e.to_string())
+    metal.write(path).map_err(|e| e.to_string())
 }
 
 #[cfg(test)]
@@ -355,6 +416,10 @@ mod tests {
         }
     }
 
+    fn arrived(key: &str) -> Arrival {
+        Arrival { key: key.into(), assign: true }
+    }
+
     fn metal(folder: &Path, id: &str) -> PathBuf {
         let path = folder.join("in.json");
         let metal = Preset { id: id.into(), name: "My gold".into(), ..preset::find("Au").unwrap() };
@@ -365,11 +430,27 @@ mod tests {
     #[test]
     fn a_metal_is_copied_and_one_with_the_id_of_another_is_refused() {
         let folder = Folder::new("metal");
-        assert_eq!(Task::Import(metal(&folder.0, "My-Au")).run(&folder.0), Some(Event::Imported("My-Au".into())));
+        assert_eq!(Task::Import(metal(&folder.0, "My-Au")).run(&folder.0), Some(Event::Imported(arrived("My-Au"))));
         let listing = Listing::read(&folder.0);
         assert_eq!(listing.metals.iter().map(|(_, m)| m.name.as_str()).collect::<Vec<_>>(), ["My gold"]);
         let Some(Event::Error(fault)) = Task::Import(metal(&folder.0, "Au")).run(&folder.0) else { panic!() };
         assert!(fault.contains("in.json") && fault.contains("another id"), "{fault}");
+    }
+
+    #[test]
+    fn an_imported_metal_is_kept_with_its_fits_and_one_without_gets_them_in_the_list() {
+        let folder = Folder::new("fits");
+        let bare = Preset { id: "Mine".into(), fits: None, ..preset::find("Fe").unwrap() };
+        let done = Task::Add { metal: Box::new(bare.clone()), assign: false }.run(&folder.0);
+        assert_eq!(done, Some(Event::Imported(Arrival { key: "Mine".into(), assign: false })));
+        let kept = Listing::read(&folder.0).metals.remove(0).1;
+        assert!(kept.fits.as_ref().is_some_and(|fits| fits.belong_to(&kept)));
+        let other = Preset { id: "Other".into(), ..bare };
+        fs::write(metals_folder(&folder.0).join("other.json"), other.to_text().unwrap()).unwrap();
+        let listing = Listing::read(&folder.0).fitted(&Listing::default());
+        assert!(listing.metals.iter().all(|(_, metal)| metal.fits.is_some()));
+        let again = Listing::read(&folder.0).fitted(&listing);
+        assert!(listing.metals.iter().zip(&again.metals).all(|(a, b)| Arc::ptr_eq(&a.1, &b.1)), "made once");
     }
 
     #[test]
@@ -382,9 +463,10 @@ mod tests {
             Task::Import(path).run(&folder.0)
         };
         for _ in 0..2 {
-            assert_eq!(import("One", "Mine"), Some(Event::Imported("Mine".into())), "the same again changes nothing");
+            assert_eq!(import("One", "Mine"), Some(Event::Imported(arrived("Mine"))), "the same again changes nothing");
         }
-        let Some(Event::ImportedAs { key, notice }) = import("Two", "Mine") else { panic!() };
+        let Some(Event::ImportedAs { arrival, notice }) = import("Two", "Mine") else { panic!() };
+        let key = arrival.key;
         assert!(key == "Mine-2" && notice.contains("`Mine-2`"), "{key}: {notice}");
         let listing = Listing::read(&folder.0);
         let known: Vec<_> = listing.metals.iter().map(|(_, m)| (m.name.as_str(), m.id.as_str())).collect();

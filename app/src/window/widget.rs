@@ -15,8 +15,10 @@ const NAME_SHARE: f32 = 0.36;
 const FIELD_WIDTH: f32 = 62.0;
 /// Points of the reset arrow.
 const RESET_WIDTH: f32 = 18.0;
-/// Largest over smallest value from which a slider is logarithmic.
+/// Largest value from which a slider is logarithmic.
 const LOGARITHMIC: f64 = 1000.0;
+/// Largest value over the default from which it is so too: the default would stand at the end of the rail.
+const FAR_ABOVE_DEFAULT: f64 = 100.0;
 
 /// What someone did to a widget.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,7 +108,8 @@ fn control_ui(
 ) -> ParamEdit {
     match (spec.kind, value) {
         (ParamKind::Number { min, max, .. }, ParamValue::Number(number)) => {
-            let places = if max - min > 20.0 { 1 } else { 3 };
+            let small = matches!(spec.default(), ParamValue::Number(v) if far_above(max, v)) && max < LOGARITHMIC;
+            let places = if max - min > 20.0 && !small { 1 } else { 3 };
             let (changed, ended) = number_ui(ui, (spec, min, max, places), number, width, name, hover);
             ParamEdit { change: changed.map(|v| Change::Set(ParamValue::Number(v))), ended }
         }
@@ -149,7 +152,8 @@ fn number_ui(
     let mut new = number;
     let gap = ui.spacing().item_spacing.x;
     ui.spacing_mut().slider_width = (width - FIELD_WIDTH - gap).max(24.0);
-    let logarithmic = min >= 0.0 && max >= LOGARITHMIC;
+    let far = matches!(spec.default(), ParamValue::Number(v) if far_above(max, v));
+    let logarithmic = min >= 0.0 && (max >= LOGARITHMIC || far);
     let slider = Slider::new(&mut new, min..=max)
         .show_value(false)
         .logarithmic(logarithmic)
@@ -170,10 +174,14 @@ fn number_ui(
     let field = ui.add_sized(vec2(FIELD_WIDTH, height), field).labelled_by(name.id).on_hover_text(hover);
     // A slider gives all digits of a double; nobody set more than the field shows.
     let scale = 10f64.powi(places as i32);
-    let rounded = if logarithmic { new } else { (new * scale).round() / scale };
+    let rounded = if max >= LOGARITHMIC { new } else { (new * scale).round() / scale };
     let changed = (slider.changed() || field.changed()).then_some(rounded.clamp(min, max));
     let ended = slider.drag_stopped() || field.drag_stopped() || field.lost_focus() || slider.lost_focus();
     (changed, ended)
+}
+
+fn far_above(max: f64, default: f64) -> bool {
+    default > 0.0 && max >= FAR_ABOVE_DEFAULT * default
 }
 
 /// A list to choose from. Returns the index when another was picked. `name` is the text beside it; without one the list

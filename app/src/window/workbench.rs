@@ -16,7 +16,7 @@ use super::session::Session;
 use super::stage::Stage;
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
-use super::user_presets::UserPresets;
+use super::user_presets::{Arrival, UserPresets};
 use super::{edits, layout, shortcuts, theme};
 
 /// Frames of the viewport's picture after which other pictures may be drawn.
@@ -187,8 +187,11 @@ impl Workbench {
         if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
             requests.push(Request::Error(fault));
         }
-        for preset in own.frame(ui.ctx(), requests) {
-            requests.push(Request::AssignPreset { preset, materials: session.selected_materials() });
+        for Arrival { key, assign } in own.frame(ui.ctx(), requests) {
+            panels.presets.select(&key);
+            if assign {
+                requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
+            }
         }
         let mut context = Context { session, preferences, stage, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));

@@ -15,6 +15,7 @@ use super::watch::{Watch, stamps};
 use crate::window::preferences::Preferences;
 use crate::window::request::{Request, Requests};
 use crate::window::session::Session;
+use crate::window::user_presets::fit;
 
 /// What a read file may change, on the thread of the window.
 pub struct Landing<'a> {
@@ -143,7 +144,7 @@ pub fn scene(scene: String) -> Load {
         let known = if in_gallery { scene } else { known_path(Path::new(&scene)) };
         let file = PathBuf::from(&known);
         let (opened, path, seen) = if !in_gallery && document::is_document(&file) {
-            let document = Document::read(&file).map_err(|e| e.to_string())?;
+            let document = fitted(Document::read(&file).map_err(|e| e.to_string())?);
             let seen = stamps(files_of(&document));
             (document::reload(document, &Sources::default()), Some(file), seen)
         } else {
@@ -160,12 +161,19 @@ pub fn scene(scene: String) -> Load {
     })
 }
 
+/// With the fits of the metals that are stored in it, which older documents do not have: panels show them, and the
+/// thread of the window must not wait for them.
+fn fitted(mut document: Document) -> Document {
+    document.presets.iter_mut().for_each(|metal| fit(Arc::make_mut(metal)));
+    document
+}
+
 /// What was not saved when the program ended.
 pub fn recovered(found: Found) -> Load {
     Load::new(format!("Recovering {}", found.title), true, move || {
         let Snapshot { document, path } = found.snapshot().clone();
         let seen = stamps(files_of(&document));
-        let opened = document::reload(Document::clone(&document), &Sources::default());
+        let opened = document::reload(fitted(Document::clone(&document)), &Sources::default());
         Ok(Box::new(move |landing| {
             landing.session.replace(opened, path);
             landing.session.set_unsaved();

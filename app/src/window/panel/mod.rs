@@ -110,7 +110,8 @@ pub struct Panels {
     /// Also renames on command.
     pub scene: SceneTree,
     material: MaterialPanel,
-    presets: PresetsPanel,
+    /// Also shows what came in.
+    pub presets: PresetsPanel,
     environment: EnvironmentPanel,
     reflectance: ReflectancePanel,
     history: HistoryPanel,

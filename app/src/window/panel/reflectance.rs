@@ -1,7 +1,8 @@
 //! Reflectance against angle: how the inspector's material reflects, and how its metal really would.
 
 use burnish_core::document::Document;
-use burnish_core::material::preset::Preset;
+use burnish_core::lighting::classical;
+use burnish_core::material::preset::{FormChoice, Preset, Tolerance};
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::surface::dielectric;
 use burnish_core::surface::fresnel::schlick;
@@ -10,7 +11,7 @@ use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, Text};
 use glam::{DVec3, Vec3};
 
 use super::Context;
-use super::presets::title;
+use super::presets::{known_fits, title};
 
 /// Degrees that are sampled, and the last of them.
 const STEPS: usize = 90;
@@ -88,14 +89,24 @@ fn curve(reflectance: impl Fn(f64) -> Vec3) -> Curve {
 
 /// What is drawn.
 fn caption(document: &Document, index: usize, material: &Material, metal: Option<&Preset>) -> String {
-    let used = document.materials.get(index).and_then(|entry| entry.preset.as_ref());
-    let form = used.and_then(|used| used.fresnel.clone());
     match metal {
         Some(metal) => {
-            let form = form.or_else(|| document.lighting.settings().text("fresnel")).unwrap_or_default();
+            let form = form_of(document, index, metal);
             format!("{}: {}; solid as rendered ({form}), dashed exact", material.name, title(metal))
         }
         None => format!("{}: from its base color and index of refraction (glTF)", material.name),
+    }
+}
+
+/// The form that is rendered; `cheapest` where it is not known which that is.
+fn form_of(document: &Document, index: usize, metal: &Preset) -> &'static str {
+    let used = document.materials.get(index).and_then(|entry| entry.preset.as_ref());
+    let own = used.and_then(|used| FormChoice::read(used.fresnel.as_deref()?, Tolerance::default()).ok());
+    match own.unwrap_or_else(|| classical::form_choice(&document.lighting.settings())) {
+        FormChoice::Of(form) => form.id(),
+        FormChoice::Cheapest(tolerance) => {
+            known_fits(metal).map_or(FormChoice::CHEAPEST, |fits| fits.cheapest(tolerance).form.id())
+        }
     }
 }
 
@@ -199,6 +210,18 @@ mod tests {
         let metal = Material { metallic: 1.0, base_color: Vec3::new(0.9, 0.6, 0.3), ..Material::default() };
         let metal = curve(|cos_theta| rendered(&metal, cos_theta as f32));
         assert!((at(&metal, 0.0) - Vec3::new(0.9, 0.6, 0.3)).length() < 1e-6);
+    }
+
+    #[test]
+    fn the_caption_names_the_form_that_the_cheapest_is() {
+        let mut document = burnish_core::document::open("gallery:workbench").unwrap().document;
+        let gold = preset::find("Au").unwrap();
+        document.assign_preset(0, &gold, Default::default());
+        let form = |document: &Document| form_of(document, 0, &gold).to_string();
+        assert_eq!(form(&document), gold.fits().cheapest(Tolerance::default()).form.id());
+        document.set_fresnel(0, Some("recipe"));
+        assert_eq!(form(&document), "recipe");
+        assert_eq!(form_of(&document, 1, &Preset { fits: None, ..gold.clone() }), "cheapest");
     }
 
     #[test]

@@ -89,7 +89,7 @@ pub const PARAMS: &[ParamSpec] = &[
     },
     ParamSpec {
         key: "fresnel-delta-e",
-        label: "Fresnel color difference",
+        label: "Fresnel ΔE",
         unit: "CIEDE2000",
         kind: ParamKind::Number { min: 0.0, max: 100.0, default: 1.0 },
         help: "Largest colour difference on a ball that the cheapest form of a metal may have; 1 is about to be seen.",

@@ -1,6 +1,5 @@
 //! The metal of a material: which, in which form, and what it bypasses.
 
-use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use burnish_core::lighting::classical;
@@ -10,7 +9,7 @@ use burnish_core::surface::fresnel::Form;
 use eframe::egui;
 
 use super::Context;
-use crate::window::panel::presets::title;
+use crate::window::panel::presets::{known_fits, title};
 use crate::window::widget::{choice_ui, name_ui, reset_ui};
 
 /// What the Fresnel forms are.
@@ -84,8 +83,11 @@ fn form_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, material:
 
 /// How far the form is from the truth, and why it was chosen. Nothing for metals that were not fitted yet.
 fn errors_ui(ui: &mut egui::Ui, metal: &Preset, choice: FormChoice) {
-    let Cow::Borrowed(fits) = metal.fits() else { return };
-    let form = choice.form(metal);
+    let Some(fits) = known_fits(metal) else { return };
+    let form = match choice {
+        FormChoice::Cheapest(tolerance) => fits.cheapest(tolerance).form,
+        FormChoice::Of(form) => form,
+    };
     let Some(fit) = fits.forms.get(&form) else { return };
     let text = format!("{form}: error {:.2} %, ΔE {:.2}", 100.0 * fit.relative, fit.delta_e);
     let reason = match choice {

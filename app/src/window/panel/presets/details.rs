@@ -1,13 +1,16 @@
-//! Where a preset comes from, and what can be done with it.
+//! Where a preset comes from, what speaks against it, how it is rendered, and what can be done with it.
 
+use burnish_core::color::gamut::{self, Clip};
 use burnish_core::material::preset::Preset;
 use burnish_core::material::saved::SavedMaterial;
 use eframe::egui;
+use glam::DVec3;
 
-use super::item::{Content, Item};
-use crate::window::icon::{Icon, icon_button};
+use super::forms::{FormSettings, forms_ui, known_fits};
+use super::item::{Content, Item, f0};
+use crate::window::icon::{self, Icon, icon_button};
 use crate::window::panel::Context;
-use crate::window::widget::name_input;
+use crate::window::widget::{name_input, screen_color};
 
 /// Name, buttons, origin.
 pub fn selected_ui(ui: &mut egui::Ui, item: &Item, name: &mut Option<String>, context: &mut Context<'_>) {
@@ -50,6 +53,53 @@ pub fn selected_ui(ui: &mut egui::Ui, item: &Item, name: &mut Option<String>, co
         }
     }
     origin_ui(ui, item);
+    if let Content::Metal(metal) = &item.content {
+        f0_ui(ui, f0(metal));
+        if let Some(fits) = known_fits(metal) {
+            forms_ui(ui, fits, FormSettings::new(&context.session.document().lighting.settings()));
+        }
+    }
+}
+
+/// Colour at normal incidence, and what of it a screen and a renderer cannot show.
+pub fn f0_ui(ui: &mut egui::Ui, f0: DVec3) {
+    let shown = f0.clamp(DVec3::ZERO, DVec3::ONE);
+    ui.horizontal_wrapped(|ui| {
+        let (place, _) = ui.allocate_exact_size(egui::vec2(22.0, 12.0), egui::Sense::hover());
+        ui.painter().rect_filled(place, 2.0, screen_color(shown.as_vec3()));
+        let hover = "Reflectance at normal incidence: linear Rec.709 under D65";
+        ui.small(format!("F0 {:.3} {:.3} {:.3}", shown.x, shown.y, shown.z)).on_hover_text(hover);
+    });
+    if let Some(clip) = gamut::clip(f0) {
+        let [r, g, b] = clip.unclamped.to_array();
+        let hover = format!(
+            "Its color is outside of Rec.709: {r:.3} {g:.3} {b:.3} before it is clamped. The difference is CIEDE2000."
+        );
+        wrapped(ui, format!("Outside of Rec.709: {}, clipped by ΔE {:.2}", beyond(&clip), clip.delta_e))
+            .on_hover_text(hover);
+    }
+}
+
+/// `R 1.037`: the channels that are clipped.
+fn beyond(clip: &Clip) -> String {
+    let (before, after) = (clip.unclamped.to_array(), clip.clamped.to_array());
+    let channels = ["R", "G", "B"].into_iter().zip(before.into_iter().zip(after));
+    let clipped = channels.filter(|(_, (before, after))| before != after);
+    clipped.map(|(name, (before, _))| format!("{name} {before:.3}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A small text that breaks.
+fn wrapped(ui: &mut egui::Ui, text: impl Into<String>) -> egui::Response {
+    ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap())
+}
+
+/// What speaks against trusting something, with the sign of a warning.
+pub fn warning_ui(ui: &mut egui::Ui, text: &str) {
+    ui.horizontal_top(|ui| {
+        let (place, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
+        icon::paint(ui.painter(), Icon::Warning, place.center(), 5.5, ui.visuals().warn_fg_color);
+        wrapped(ui, format!("Warning: {text}"));
+    });
 }
 
 /// Where a preset comes from, and what speaks against it.
@@ -57,12 +107,12 @@ pub fn origin_ui(ui: &mut egui::Ui, item: &Item) {
     ui.spacing_mut().item_spacing.y = 2.0;
     match &item.content {
         Content::Metal(metal) => {
-            ui.strong(title(metal));
-            ui.small(origin(metal));
-            ui.small(range(metal));
+            ui.add(egui::Label::new(egui::RichText::new(title(metal)).strong()).wrap());
             if let Some(warning) = &metal.warning {
-                ui.colored_label(ui.visuals().warn_fg_color, egui::RichText::new(warning).small());
+                warning_ui(ui, warning);
             }
+            wrapped(ui, origin(metal)).on_hover_text(citation(metal));
+            wrapped(ui, range(metal));
         }
         Content::Material(material) => {
             ui.strong(format!("{}, saved material", material.name));
@@ -83,6 +133,16 @@ fn origin(metal: &Preset) -> String {
     let parts = [source.author.clone(), year, source.journal.clone(), doi];
     let known: Vec<String> = parts.into_iter().flatten().collect();
     if known.is_empty() { "Source not stated".into() } else { known.join(", ") }
+}
+
+/// All that is known of the source.
+fn citation(metal: &Preset) -> String {
+    let source = &metal.source;
+    let table = source.table.as_ref().map(|table| format!("Table: {table}"));
+    let licence = source.licence.as_ref().map(|licence| format!("Licence of the table: {licence}"));
+    let parts = [source.title.clone(), table, licence, metal.note.clone()];
+    let known: Vec<String> = parts.into_iter().flatten().collect();
+    if known.is_empty() { "Nothing more is stated in the file".into() } else { known.join("\n") }
 }
 
 fn range(metal: &Preset) -> String {
@@ -109,7 +169,14 @@ mod tests {
         for part in ["Johnson and R. W. Christy", "1972", "doi:10.1103/PhysRevB.6.4370", "380 to 780 nm"] {
             assert!(text.contains(part), "{text}");
         }
+        assert!(citation(&gold).contains("Licence of the table: CC0-1.0"), "{}", citation(&gold));
         let unknown = Preset { source: Default::default(), ..gold };
         assert_eq!(origin(&unknown), "Source not stated");
+    }
+
+    #[test]
+    fn what_is_clipped_is_named_by_channel() {
+        let clip = gamut::clip(f0(&preset::find("Au").unwrap())).unwrap();
+        assert_eq!(beyond(&clip), "R 1.037");
     }
 }

@@ -1,6 +1,7 @@
 //! The preset browser: balls to look at, to search, to put on materials.
 
 mod details;
+mod forms;
 mod item;
 mod tile;
 
@@ -13,9 +14,10 @@ use burnish_core::document::Assigned;
 use burnish_core::material::preset::Preset;
 use eframe::egui;
 
-pub use details::title;
+pub use details::{f0_ui, title, warning_ui};
+pub use forms::{FormSettings, forms_ui, known_fits};
 pub use item::assign;
-use item::{Item, list};
+use item::{Item, common_tags, list};
 
 use super::{Context, DraggedPreset};
 use crate::window::files::typed_path;
@@ -23,15 +25,17 @@ use crate::window::request::{Purpose, Request};
 use crate::window::widget::{choice_ui, name_input};
 
 /// What is listed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 enum Filter {
     #[default]
     All,
     Favourites,
     Own,
+    Tag(String),
 }
 
-const FILTERS: [(&str, Filter); 3] = [("All", Filter::All), ("Favorites", Filter::Favourites), ("Own", Filter::Own)];
+/// Most of the panel's height that what is told about a preset takes; more is scrolled.
+const DETAILS_SHARE: f32 = 0.5;
 
 /// The browser.
 #[derive(Default)]
@@ -42,8 +46,12 @@ pub struct PresetsPanel {
     selected: Option<String>,
     /// The new name that is being typed.
     name: Option<String>,
+    /// Points from top to bottom.
+    height: f32,
     import: Option<String>,
     items: Vec<Item>,
+    /// Of the items, the most frequent first.
+    tags: Vec<String>,
     /// What `items` were made of.
     made_of: Option<(u64, Vec<Arc<Preset>>)>,
 }
@@ -52,11 +60,18 @@ impl PresetsPanel {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         self.refresh(context);
+        self.height = ui.available_height();
         self.search_ui(ui);
         egui::Panel::bottom("preset details").resizable(false).show_separator_line(true).show(ui, |ui| {
             self.foot_ui(ui, context);
         });
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.grid_ui(ui, context));
+    }
+
+    /// Tells about the preset of a key.
+    pub fn select(&mut self, key: &str) {
+        self.selected = Some(key.into());
+        self.name = None;
     }
 
     fn refresh(&mut self, context: &Context<'_>) {
@@ -68,6 +83,7 @@ impl PresetsPanel {
         };
         if !self.made_of.as_ref().is_some_and(same) {
             self.items = list(context.own, document);
+            self.tags = common_tags(&self.items);
             self.made_of = Some((now.0, now.1.clone()));
         }
     }
@@ -78,23 +94,32 @@ impl PresetsPanel {
             let field = egui::TextEdit::singleline(&mut self.search).hint_text("Search").desired_width(width);
             let field = ui.add(field).on_hover_text("Name, symbol or tag, such as gold, Au or noble");
             name_input(&field, "Search presets", &self.search);
-            let place = FILTERS.iter().position(|(_, filter)| *filter == self.filter).unwrap_or(0);
-            let names = FILTERS.map(|(name, _)| name);
-            let picked = choice_ui(ui, "Show presets", &names, place, 80.0, None, "Which presets are listed");
-            if let Some((_, filter)) = picked.and_then(|place| FILTERS.get(place)) {
-                self.filter = *filter;
-            }
+            self.filter_ui(ui);
         });
+    }
+
+    fn filter_ui(&mut self, ui: &mut egui::Ui) {
+        let tags = self.tags.iter().map(|tag| (tag.clone(), Filter::Tag(tag.clone())));
+        let fixed = [("All", Filter::All), ("Favorites", Filter::Favourites), ("Own", Filter::Own)];
+        let filters: Vec<(String, Filter)> =
+            fixed.into_iter().map(|(name, filter)| (name.to_string(), filter)).chain(tags).collect();
+        let names: Vec<&str> = filters.iter().map(|(name, _)| name.as_str()).collect();
+        // A tag may have gone with the last preset that had it.
+        let place = filters.iter().position(|(_, filter)| *filter == self.filter).unwrap_or(0);
+        let hover = "Which presets are listed: all, your favorites, your own, or those with a tag";
+        let picked = choice_ui(ui, "Show presets", &names, place, 80.0, None, hover).unwrap_or(place);
+        self.filter = filters.get(picked).map(|(_, filter)| filter.clone()).unwrap_or_default();
     }
 
     fn grid_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         let in_use = context.session.material().and_then(|entry| Some(entry.preset.as_ref()?.id.clone()));
         let favourites = context.preferences.favourites.clone();
         let shown = self.items.iter().filter(|item| {
-            let kept = match self.filter {
+            let kept = match &self.filter {
                 Filter::All => true,
                 Filter::Favourites => favourites.contains(&item.key),
                 Filter::Own => item.is_own(),
+                Filter::Tag(tag) => item.tags().contains(tag),
             };
             kept && item.matches(&self.search)
         });
@@ -109,7 +134,7 @@ impl PresetsPanel {
                     selected: self.selected.as_ref() == Some(&item.key),
                     favourite: favourites.contains(&item.key),
                 };
-                let ball = context.thumbnails.get(&item.subject).map(|ball| ball.id());
+                let ball = || context.thumbnails.get(&item.subject).map(|ball| ball.id());
                 let response = tile::tile_ui(ui, item, ball, look);
                 response.dnd_set_drag_payload(DraggedPreset(item.key.clone()));
                 if response.double_clicked() {
@@ -121,15 +146,14 @@ impl PresetsPanel {
             }
         });
         if empty {
-            ui.weak(match self.filter {
+            ui.weak(match &self.filter {
                 Filter::Own => "No presets of your own yet. Save a material as preset, or import a metal.",
                 Filter::Favourites if self.search.is_empty() => "No favorites yet. Select a preset and press its star.",
                 _ => "Nothing is found. Try a name, a symbol or a tag.",
             });
         }
         if let Some((preset, materials)) = picked {
-            self.selected = Some(preset.clone());
-            self.name = None;
+            self.select(&preset);
             context.requests.push(Request::AssignPreset { preset, materials });
         }
     }
@@ -139,7 +163,10 @@ impl PresetsPanel {
         ui.add_space(2.0);
         let selected = self.selected.clone();
         if let Some(item) = self.items.iter().find(|item| Some(&item.key) == selected.as_ref()).cloned() {
-            details::selected_ui(ui, &item, &mut self.name, context);
+            let height = (DETAILS_SHARE * self.height).max(80.0);
+            egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+                details::selected_ui(ui, &item, &mut self.name, context);
+            });
             ui.separator();
         }
         let mut replaces = context.own.textures == Assigned::ReplaceTextures;

@@ -22,14 +22,15 @@ pub struct Look {
     pub favourite: bool,
 }
 
-/// A button that can be dragged. Its name is that of the preset.
-pub fn tile_ui(ui: &mut egui::Ui, item: &Item, ball: Option<TextureId>, look: Look) -> Response {
+/// A button that can be dragged. Its name is that of the preset. `ball` is called where it is seen only.
+pub fn tile_ui(ui: &mut egui::Ui, item: &Item, ball: impl FnOnce() -> Option<TextureId>, look: Look) -> Response {
     let (rect, response) = ui.allocate_exact_size(TILE, Sense::click_and_drag());
     response
         .widget_info(|| WidgetInfo::selected(egui::accesskit::Role::Button, ui.is_enabled(), look.in_use, item.name()));
     if !ui.is_rect_visible(rect) {
         return response;
     }
+    let ball = ball();
     let visuals = ui.style().interact_selectable(&response, look.selected);
     let painter = ui.painter();
     if look.selected || response.hovered() || response.has_focus() {
@@ -43,6 +44,9 @@ pub fn tile_ui(ui: &mut egui::Ui, item: &Item, ball: Option<TextureId>, look: Lo
     ball_ui(painter, place, item, ball);
     if look.favourite {
         icon::paint(painter, Icon::Star, rect.right_top() + vec2(-9.0, 9.0), 5.5, ui.visuals().warn_fg_color);
+    }
+    if item.warning().is_some() {
+        icon::paint(painter, Icon::Warning, rect.left_top() + vec2(10.0, 10.0), 6.0, ui.visuals().warn_fg_color);
     }
     let text = egui::WidgetText::from(item.name()).into_galley(
         ui,

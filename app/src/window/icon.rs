@@ -45,14 +45,16 @@ pub fn paint(painter: &Painter, icon: Icon, center: Pos2, radius: f32, color: Co
     }
 }
 
-/// The mark is cut out dark: the sign reads without its colour.
+/// The mark stands out from the triangle: the sign reads without its colour.
 fn warning(painter: &Painter, center: Pos2, radius: f32, color: Color32) {
     let corner = |x: f32, y: f32| center + radius * vec2(x, y);
     let triangle = vec![corner(0.0, -1.1), corner(1.15, 0.9), corner(-1.15, 0.9)];
     painter.add(Shape::convex_polygon(triangle, color, Stroke::new(0.22 * radius, Color32::from_black_alpha(160))));
-    let mark = Stroke::new(0.3 * radius, Color32::BLACK);
+    let bright = color.r() as u32 + color.g() as u32 > 300;
+    let ink = if bright { Color32::BLACK } else { Color32::WHITE };
+    let mark = Stroke::new(0.3 * radius, ink);
     painter.line_segment([corner(0.0, -0.4), corner(0.0, 0.25)], mark);
-    painter.circle_filled(corner(0.0, 0.6), 0.18 * radius, Color32::BLACK);
+    painter.circle_filled(corner(0.0, 0.6), 0.18 * radius, ink);
 }
 
 /// Three quarters of a circle, counter-clockwise, with a head.

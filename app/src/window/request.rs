@@ -32,8 +32,11 @@ pub enum Request {
         /// The materials.
         materials: Vec<usize>,
     },
-    /// Read a preset file, keep it with the user's, and put it on the selected materials.
+    /// Read a preset file, keep it with the user's, and put it on the selected materials; show a table of optical
+    /// constants first.
     ImportPreset(PathBuf),
+    /// Show a pasted table of optical constants, to be kept with the user's presets.
+    ImportText(String),
     /// Look for a missing file in another place.
     Relink {
         /// What is missing.

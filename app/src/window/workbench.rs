@@ -7,13 +7,14 @@ use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
 use super::commands::{Command, Entry, Menu, TABLE};
-use super::files::{Files, Folders};
+use super::files::{Files, Folders, is_table};
 use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
+use super::table_import::{Origin, TableImport};
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::user_presets::{Arrival, UserPresets};
@@ -49,6 +50,7 @@ pub struct Workbench {
     requests: Requests,
     files: Files,
     own: UserPresets,
+    tables: TableImport,
     thumbnails: Thumbnails,
     toasts: Toasts,
     palette: Option<Palette>,
@@ -81,6 +83,7 @@ impl Workbench {
             own: UserPresets::new(files.folders().map(Folders::presets)),
             thumbnails: Thumbnails::new(files.folders().map(Folders::thumbnails)),
             files,
+            tables: TableImport::default(),
             toasts: Toasts::default(),
             palette: None,
             shortcut_page: false,
@@ -114,7 +117,7 @@ impl Workbench {
 
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.thumbnails.is_drawing()
+        self.files.is_busy() || self.tables.is_busy() || self.thumbnails.is_drawing()
     }
 
     /// Goes over to another session, away from the start page.
@@ -180,6 +183,7 @@ impl Workbench {
             requests,
             files,
             own,
+            tables,
             thumbnails,
             ..
         } = self;
@@ -213,6 +217,7 @@ impl Workbench {
             }
         });
         files.frame(ui, &mut context);
+        tables.ui(ui.ctx(), &mut context);
         if files.take_opened() {
             self.start = None;
             ui.ctx().request_repaint();
@@ -257,7 +262,16 @@ impl Workbench {
             Request::Command(command) => self.command(command, ctx),
             Request::ImportPreset(path) => {
                 self.start = None;
-                self.own.import(path);
+                match is_table(&path) {
+                    true => self.tables.open(Origin::File(path)),
+                    false => self.own.import(path),
+                }
+                ctx.request_repaint();
+            }
+            Request::ImportText(text) => {
+                self.start = None;
+                self.tables.open(Origin::Text(text));
+                ctx.request_repaint();
             }
             Request::AssignPreset { preset, materials } => {
                 if let Err(fault) = assign(&mut self.session, &self.own, &preset, &materials) {

@@ -15,6 +15,7 @@ pub fn trials() -> Vec<Trial> {
         trial("every_panel_looks_as_accepted", gpu, every_panel),
         trial("the_window_looks_as_accepted_in_both_themes", gpu, whole_window),
         trial("start_page_palette_and_shortcut_page_look_as_accepted", gpu, pages),
+        trial("the_import_preview_looks_as_accepted_in_both_themes", gpu, import_preview),
         trial("every_menu_shows_its_commands", &[], menus),
     ]
 }
@@ -75,6 +76,28 @@ fn pages() {
     bench.window.run_steps(3);
     bench.workbench().ask(Request::Command(Command::Shortcuts));
     look(&mut bench, "shortcuts");
+    judge(&mut bench);
+}
+
+fn import_preview() {
+    let setup = Setup { name: "preview", scene: Some(SCENE), size: [900.0, 760.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    let gold = burnish_core::material::preset::find("Au").expect("it is there");
+    let rows = gold.wavelength_nm.iter().zip(gold.n.iter().zip(&gold.k));
+    let rows: Vec<String> = rows.map(|(nm, (n, k))| format!("{},{n},{k}", nm / 1000.0)).collect();
+    let good = format!("wl,n,k\n{}", rows.join("\n"));
+    for (name, text, sign) in [
+        ("import_preview", &good, "Plot of n and k over wavelength"),
+        ("import_fault", &good.replace("0.5,0.97112", "0.5,-0.97112"), "Nothing can be imported:"),
+    ] {
+        bench.workbench().ask(Request::ImportText(text.clone()));
+        bench.until_shown(sign);
+        for (dark, theme) in [(true, "dark"), (false, "light")] {
+            bench.workbench().preferences_mut().dark = Some(dark);
+            look(&mut bench, &format!("{name}_{theme}"));
+        }
+        bench.click("Cancel");
+    }
     judge(&mut bench);
 }
 

@@ -4,6 +4,7 @@
 //! monkey loose twenty times.
 
 mod bench;
+mod import;
 mod looks;
 mod monkey;
 mod snapshot;
@@ -12,7 +13,9 @@ mod workflow;
 use libtest_mimic::Arguments;
 
 fn main() {
-    let trials =
-        [workflow::trials(), looks::trials(), monkey::trials(), snapshot::trials()].into_iter().flatten().collect();
+    let trials = [workflow::trials(), import::trials(), looks::trials(), monkey::trials(), snapshot::trials()]
+        .into_iter()
+        .flatten()
+        .collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }

@@ -24,6 +24,8 @@ const MODELS: &[&str] = &["gltf", "glb", "obj"];
 const MAPS: &[&str] = &["hdr", "exr"];
 /// Textures.
 const IMAGES: &[&str] = &["png", "jpg", "jpeg"];
+/// Metals and saved materials of ours, then tables of optical constants.
+const PRESETS: &[&str] = &["json", "csv", "tsv", "txt", "dat", "yml", "yaml", "spd"];
 /// Recent documents that the dialog lists.
 const MAX_RECENT: usize = 6;
 
@@ -80,7 +82,7 @@ impl Ask {
             Ask::Environment | Ask::Relink(Missing { kind: MissingKind::Environment, .. }) => ("HDR pictures", MAPS),
             Ask::Texture { .. } | Ask::Relink(Missing { kind: MissingKind::Texture, .. }) => ("Pictures", IMAGES),
             Ask::Relink(Missing { kind: MissingKind::Model, .. }) => ("Models", MODELS),
-            Ask::Preset => ("Presets", &["json"]),
+            Ask::Preset => ("Presets and tables of n and k", PRESETS),
             Ask::SaveAs(_) => ("Documents", &["burnish"]),
             Ask::SaveImage(_) => ("Pictures", &["png", "exr"]),
         }
@@ -285,6 +287,8 @@ pub enum FileKind {
     Environment,
     Texture,
     Preset,
+    /// Of optical constants.
+    Table,
 }
 
 impl FileKind {
@@ -299,9 +303,15 @@ impl FileKind {
         } else if is(IMAGES) {
             Some(FileKind::Texture)
         } else {
-            is(&["json"]).then_some(FileKind::Preset)
+            let kind = if is(&["json"]) { FileKind::Preset } else { FileKind::Table };
+            is(PRESETS).then_some(kind)
         }
     }
+}
+
+/// True for a file that is looked at before it is imported.
+pub fn is_table(path: &Path) -> bool {
+    FileKind::of(path) == Some(FileKind::Table)
 }
 
 #[cfg(test)]
@@ -323,7 +333,8 @@ mod tests {
         assert_eq!(FileKind::of(Path::new("a.exr")), Some(FileKind::Environment));
         assert_eq!(FileKind::of(Path::new("a.jpeg")), Some(FileKind::Texture));
         assert_eq!(FileKind::of(Path::new("a.json")), Some(FileKind::Preset));
-        assert_eq!(FileKind::of(Path::new("a.txt")), None);
+        assert_eq!(FileKind::of(Path::new("a.YML")), Some(FileKind::Table));
+        assert_eq!(FileKind::of(Path::new("a.pdf")), None);
         assert_eq!(FileKind::of(Path::new("glb")), None);
     }
 

@@ -1,4 +1,4 @@
-//! Files that are dropped onto the window, or whose path is pasted.
+//! Files that are dropped onto the window, or whose path is pasted, and pasted tables.
 
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,7 @@ use super::dialog::{FileKind, typed_path};
 use super::load::name_of;
 use crate::window::request::{Request, Requests};
 use crate::window::session::Session;
+use crate::window::table_import::looks_like_table;
 
 /// A picture that waits for the choice of its slot.
 #[derive(Clone, Debug)]
@@ -17,11 +18,19 @@ pub struct Pending {
     material: usize,
 }
 
-/// Looks for dropped files and pasted paths. Pictures are returned: their slot must be asked for.
+/// Looks for dropped files and for pasted paths and tables. Pictures are returned: their slot must be asked for.
 pub fn take(ctx: &egui::Context, session: &Session, outbox: &mut Requests) -> Vec<Pending> {
     let mut paths: Vec<PathBuf> =
         ctx.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
     if !ctx.egui_wants_keyboard_input() {
+        let text = ctx.input(|input| {
+            let mut texts = input.events.iter().filter_map(|event| match event {
+                Event::Paste(text) if text.lines().count() > 1 => Some(text.clone()),
+                _ => None,
+            });
+            texts.find(|text| looks_like_table(text))
+        });
+        outbox.extend(text.map(Request::ImportText));
         let pasted = ctx.input(|input| {
             let mut texts = input.events.iter().filter_map(|event| match event {
                 Event::Paste(text) if text.lines().count() == 1 => Some(typed_path(text)),
@@ -54,11 +63,11 @@ fn sort(mut paths: Vec<PathBuf>, material: usize, outbox: &mut Requests) -> Vec<
                 once(&mut has_scene, outbox, "model or document", Request::OpenScene(scene));
             }
             Some(FileKind::Environment) => once(&mut has_map, outbox, "HDRI", Request::LoadEnvironment(path)),
-            Some(FileKind::Preset) => outbox.push(Request::ImportPreset(path)),
+            Some(FileKind::Preset | FileKind::Table) => outbox.push(Request::ImportPreset(path)),
             Some(FileKind::Texture) => pictures.push(Pending { path, material }),
             None => outbox.push(Request::Error(format!(
                 "{name} cannot be used; drop a model (.gltf, .glb, .obj), document (.burnish), HDRI (.hdr, .exr), \
-                 texture (.png, .jpg) or preset (.json)"
+                 texture (.png, .jpg), preset (.json) or table of optical constants (.csv, .txt, .yml, .spd)"
             ))),
         }
     }
@@ -90,6 +99,7 @@ fn hint(path: &Path) -> String {
         Some(FileKind::Environment) => format!("Light the scene with {name}"),
         Some(FileKind::Texture) => format!("Use {name} as a texture of `{{material}}`"),
         Some(FileKind::Preset) => format!("Import the preset {name}"),
+        Some(FileKind::Table) => format!("Import optical constants from {name}"),
         None => format!("{name} cannot be used here"),
     }
 }
@@ -129,7 +139,7 @@ mod tests {
     #[test]
     fn several_files_become_one_scene_one_light_and_the_rest() {
         let mut outbox = Requests::new();
-        let paths = ["b.hdr", "w.png", "a.glb", "c.hdr", "x.txt", "p.json"].map(PathBuf::from).to_vec();
+        let paths = ["b.hdr", "w.png", "a.glb", "c.hdr", "x.pdf", "p.json"].map(PathBuf::from).to_vec();
         let pictures = sort(paths, 2, &mut outbox);
         assert_eq!(pictures.len(), 1);
         let words: Vec<String> = outbox.iter().map(|request| format!("{request:?}")).collect();

@@ -36,7 +36,7 @@ use save::{Choice, Next, Saving, Wish};
 use store::Store;
 use watch::Watch;
 
-pub use dialog::typed_path;
+pub use dialog::{is_table, typed_path};
 pub use folders::Folders;
 
 /// Jobs and dialogs about files.
@@ -215,7 +215,8 @@ impl Files {
             | Request::Notice(_)
             | Request::Error(_)
             | Request::AssignPreset { .. }
-            | Request::ImportPreset(_) => {}
+            | Request::ImportPreset(_)
+            | Request::ImportText(_) => {}
         }
         ctx.request_repaint();
     }

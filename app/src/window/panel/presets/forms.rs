@@ -20,7 +20,7 @@ pub struct FormSettings {
     /// How the form of a metal is chosen.
     choice: FormChoice,
     /// What the cheapest form may err by, chosen or not.
-    tolerance: Tolerance,
+    pub tolerance: Tolerance,
 }
 
 impl FormSettings {

@@ -182,7 +182,9 @@ impl PresetsPanel {
     fn import_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         let mut path = self.import.clone().unwrap_or_default();
         ui.horizontal(|ui| {
-            let button = ui.button("Import...").on_hover_text("Add a metal or saved material (.json) to your presets");
+            let hover = "Add to your presets: a metal or saved material (.json), or a table of n and k (.csv, .txt, .yml, \
+                         .spd). A table can also be dropped or pasted.";
+            let button = ui.button("Import...").on_hover_text(hover);
             if button.clicked() {
                 context.requests.push(Request::PickFile(Purpose::Preset));
             }

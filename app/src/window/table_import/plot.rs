@@ -49,7 +49,8 @@ pub fn plot_ui(ui: &mut egui::Ui, metal: &Preset, height: f32) {
                 let at = points.get(points.len() / 4).copied().unwrap_or_default();
                 plot.line(Line::new(name, PlotPoints::from(points)).color(color).style(style).width(1.5));
                 // Above the line, and heard by nobody: the line has the name too.
-                let text = Text::new("", PlotPoint::new(at[0], at[1]), name).color(color);
+                let text =
+                    Text::new("", PlotPoint::new(at[0], at[1]), egui::RichText::new(name).size(13.0)).color(color);
                 plot.text(text.anchor(Align2::CENTER_BOTTOM).allow_hover(false));
             }
         });

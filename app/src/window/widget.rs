@@ -13,6 +13,8 @@ use super::icon::{Icon, icon_button};
 const NAME_SHARE: f32 = 0.36;
 /// Points of a number field.
 const FIELD_WIDTH: f32 = 62.0;
+/// Points of a list that drops down; more is scrolled.
+const LIST_HEIGHT: f32 = 360.0;
 /// Points of the reset arrow.
 const RESET_WIDTH: f32 = 18.0;
 /// Largest value from which a slider is logarithmic.
@@ -197,13 +199,17 @@ pub fn choice_ui<T: AsRef<str>>(
 ) -> Option<usize> {
     let mut picked = None;
     let shown = options.get(index).map_or("choose...", AsRef::as_ref);
-    let list = egui::ComboBox::from_id_salt(label).width(width).selected_text(shown).truncate().show_ui(ui, |ui| {
-        for (place, option) in options.iter().enumerate() {
-            if ui.selectable_label(place == index, option.as_ref()).clicked() && place != index {
-                picked = Some(place);
-            }
-        }
-    });
+    let list =
+        egui::ComboBox::from_id_salt(label).width(width).height(LIST_HEIGHT).selected_text(shown).truncate().show_ui(
+            ui,
+            |ui| {
+                for (place, option) in options.iter().enumerate() {
+                    if ui.selectable_label(place == index, option.as_ref()).clicked() && place != index {
+                        picked = Some(place);
+                    }
+                }
+            },
+        );
     match name {
         Some(name) => _ = list.response.labelled_by(name.id).on_hover_text(hover),
         None => {

@@ -192,7 +192,7 @@ impl Workbench {
             requests.push(Request::Error(fault));
         }
         for Arrival { key, assign } in own.frame(ui.ctx(), requests) {
-            panels.presets.select(&key);
+            panels.presets.reveal(&key);
             if assign {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }

@@ -92,6 +92,7 @@ fn dropped() {
     let kept = own(&bench);
     assert_eq!(kept.iter().map(|metal| metal.id.as_str()).collect::<Vec<_>>(), ["My-gold"]);
     assert!(kept[0].fits.as_ref().is_some_and(|fits| fits.belong_to(&kept[0])), "it is kept with its fits");
+    assert!(bench.window.query_by_label("Delete preset").is_some(), "it is told about");
     assert_eq!(metal_of(&bench, 0), None, "it was imported, not assigned");
 
     bench.window.get_by_label("Search presets").set_text_value_accesskit("");

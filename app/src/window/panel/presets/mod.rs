@@ -44,6 +44,8 @@ pub struct PresetsPanel {
     filter: Filter,
     /// Key of the preset whose origin is told.
     selected: Option<String>,
+    /// It shall be brought into sight.
+    reveals: bool,
     /// The new name that is being typed.
     name: Option<String>,
     /// Points from top to bottom.
@@ -68,8 +70,13 @@ impl PresetsPanel {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.grid_ui(ui, context));
     }
 
-    /// Tells about the preset of a key.
-    pub fn select(&mut self, key: &str) {
+    /// Tells about the preset of a key, and brings it into sight.
+    pub fn reveal(&mut self, key: &str) {
+        self.select(key);
+        self.reveals = true;
+    }
+
+    fn select(&mut self, key: &str) {
         self.selected = Some(key.into());
         self.name = None;
     }
@@ -136,6 +143,9 @@ impl PresetsPanel {
                 };
                 let ball = || context.thumbnails.get(&item.subject).map(|ball| ball.id());
                 let response = tile::tile_ui(ui, item, ball, look);
+                if look.selected && self.reveals {
+                    response.scroll_to_me(Some(egui::Align::Center));
+                }
                 response.dnd_set_drag_payload(DraggedPreset(item.key.clone()));
                 if response.double_clicked() {
                     picked = Some((item.key.clone(), context.session.selected_materials()));
@@ -145,6 +155,7 @@ impl PresetsPanel {
                 response.on_hover_ui(|ui| details::origin_ui(ui, item));
             }
         });
+        self.reveals = false;
         if empty {
             ui.weak(match &self.filter {
                 Filter::Own => "No presets of your own yet. Save a material as preset, or import a metal.",

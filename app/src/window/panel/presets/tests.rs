@@ -1,8 +1,10 @@
+use burnish_core::document::Document;
 use eframe::egui::{self, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use crate::window::stage::Stage;
+use crate::window::user_presets::UserPresets;
 use crate::window::{Options, Workbench};
 
 fn window(folder: &str) -> Harness<'static, Workbench> {
@@ -59,6 +61,41 @@ fn the_search_leaves_what_it_finds() {
     search(&mut window, "gold");
     window.get_by_role_and_label(Role::Button, "Gold");
     assert!(window.query_by_role_and_label(Role::Button, "Silver").is_none());
+}
+
+#[test]
+fn a_tag_leaves_those_that_have_it() {
+    let mut window = window("tag");
+    window.get_by_role_and_label(Role::ComboBox, "Show presets").click();
+    window.run_steps(3);
+    window.get_by_label("steel").click();
+    window.run_steps(3);
+    window.get_by_role_and_label(Role::Button, "Stainless steel, ferritic");
+    assert!(window.query_by_role_and_label(Role::Button, "Gold").is_none());
+}
+
+#[test]
+fn balls_are_asked_for_where_they_are_seen_only() {
+    let items = super::list(&UserPresets::default(), &Document::default());
+    let asked = std::cell::RefCell::new(std::collections::BTreeSet::new());
+    let count = items.len();
+    let mut grid = Harness::builder().with_size(vec2(250.0, 260.0)).build_ui(|ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for item in &items {
+                    let look = super::tile::Look { in_use: false, selected: false, favourite: false };
+                    let ball = || {
+                        asked.borrow_mut().insert(item.key.clone());
+                        None
+                    };
+                    super::tile::tile_ui(ui, item, ball, look);
+                }
+            });
+        });
+    });
+    grid.run();
+    let seen = asked.borrow().len();
+    assert!((6..=12).contains(&seen) && seen < count, "{seen} of {count}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
-use burnish_core::surface::{fresnel, layered};
+use burnish_core::surface::{fresnel, layered, micro_normal};
 
 /// A shader module, joined from leaves and the pass's own files.
 pub struct Shader {
@@ -23,14 +23,14 @@ const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 /// Fills the G-buffer.
 pub static GBUFFER: Shader = Shader {
     name: "gbuffer",
-    leaves: &[&layered::WGSL],
+    leaves: &[&layered::WGSL, &micro_normal::WGSL],
     files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/gbuffer/gbuffer.wgsl")],
 };
 
 /// Depth from a light.
 pub static SHADOW: Shader = Shader {
     name: "shadow",
-    leaves: &[&layered::WGSL],
+    leaves: &[&layered::WGSL, &micro_normal::WGSL],
     files: &[NO_TABLES, TYPES, TEXEL, RESOLVE, include_str!("pass/shadow/shadow.wgsl")],
 };
 
@@ -51,7 +51,7 @@ pub static CLASSICAL: Shader = Shader {
 /// Blended surfaces.
 pub static FORWARD: Shader = Shader {
     name: "forward",
-    leaves: &[&classical::WGSL],
+    leaves: &[&classical::WGSL, &micro_normal::WGSL],
     files: &[TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
 };
 

@@ -7,7 +7,7 @@ use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
 use burnish_core::surface::ggx::{self, Masking, albedo};
-use burnish_core::surface::{coat, fresnel};
+use burnish_core::surface::{coat, fresnel, micro_normal};
 use burnish_render::layout::types::{CONSTANTS, STRUCTS};
 use burnish_render::shader;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -168,6 +168,24 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("GGX_ALBEDO_SCHLICK_NARROWING", albedo::ALBEDO_SCHLICK_NARROWING.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
+        "micro_normal" => vec![
+            ("MICRO_NORMAL_NONE", f64::from(micro_normal::Kind::None as u32)),
+            ("MICRO_NORMAL_GRAIN", f64::from(micro_normal::Kind::Grain as u32)),
+            ("MICRO_NORMAL_CAST", f64::from(micro_normal::Kind::Cast as u32)),
+            ("MICRO_NORMAL_HAMMERED", f64::from(micro_normal::Kind::Hammered as u32)),
+            ("MICRO_NORMAL_FADE_FROM", micro_normal::FADE_FROM.into()),
+            ("MICRO_NORMAL_FADE_TO", micro_normal::FADE_TO.into()),
+            ("MICRO_NORMAL_PRECISION", micro_normal::PRECISION.into()),
+            ("MICRO_NORMAL_NOISE_SLOPE", micro_normal::NOISE_SLOPE.into()),
+            ("MICRO_NORMAL_DENT_SLOPE", micro_normal::DENT_SLOPE.into()),
+            ("MICRO_NORMAL_JITTER", micro_normal::JITTER.into()),
+            ("MICRO_NORMAL_REACH", micro_normal::REACH.into()),
+            ("MICRO_NORMAL_SHARPNESS", micro_normal::SHARPNESS.into()),
+            ("MICRO_NORMAL_FLAT", micro_normal::FLAT.into()),
+            ("MICRO_NORMAL_CAST_OCTAVES", micro_normal::CAST_OCTAVES.into()),
+            ("MICRO_NORMAL_CAST_GAIN", micro_normal::CAST_GAIN.into()),
+            ("MICRO_NORMAL_CAST_SHARE", micro_normal::CAST_SHARE.into()),
+        ],
         "classical" => vec![("CLASSICAL_OVERLAP", classical::OVERLAP.into())],
         _ => Vec::new(),
     }

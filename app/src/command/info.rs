@@ -5,6 +5,7 @@ use std::io::Write;
 use burnish_core::document::Missing;
 use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRole};
 use burnish_core::scene::{Camera, Light, LightKind, Projection, Scene, Texels};
+use burnish_core::surface::micro_normal;
 use serde::Serialize;
 
 use super::{spaced, write_json};
@@ -63,6 +64,10 @@ struct MaterialInfo {
     anisotropy: f32,
     /// Degrees counter-clockwise from the tangent.
     anisotropy_rotation: f32,
+    /// Bumps of the finish: their kind, their size in millimetres, their slope.
+    micro_normal: &'static str,
+    micro_size_mm: f32,
+    micro_depth: f32,
     /// Preset of the metal, where one is set.
     preset: Option<String>,
     alpha_mode: &'static str,
@@ -208,6 +213,9 @@ impl MaterialInfo {
             coat_roughness: material.coat_roughness,
             anisotropy: material.anisotropy,
             anisotropy_rotation: material.anisotropy_rotation.to_degrees(),
+            micro_normal: micro_normal::Kind::IDS[material.micro_normal as usize],
+            micro_size_mm: material.micro_size_mm,
+            micro_depth: material.micro_depth,
             preset: match &material.reflectance {
                 Reflectance::BaseColor => None,
                 Reflectance::Preset { id, .. } => Some(id.clone()),
@@ -246,6 +254,9 @@ impl MaterialInfo {
             ("anisotropy rotation in degrees", self.anisotropy_rotation, 0.0),
         ];
         parts.extend(numbers.iter().filter(|(_, v, plain)| v != plain).map(|(key, v, _)| format!("{key} {v}")));
+        if self.micro_normal != "none" && self.micro_depth > 0.0 {
+            parts.push(format!("{} bumps of {} mm, depth {}", self.micro_normal, self.micro_size_mm, self.micro_depth));
+        }
         if self.specular_color != [1.0; 3] {
             parts.push(format!("specular color {}", spaced(self.specular_color)));
         }

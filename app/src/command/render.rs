@@ -9,6 +9,7 @@ use burnish_core::color::tone::ToneMap;
 use burnish_core::document::Document;
 use burnish_core::file::{PictureFormat, write_picture};
 use burnish_core::lighting::classical;
+use burnish_core::material::finish;
 use burnish_core::material::preset::{self, PresetError};
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::param::{ParamSpec, Settings};
@@ -34,6 +35,12 @@ pub struct Args {
     /// Metal for the material SLOT, a name or #index; for all without one; repeatable
     #[arg(long, value_name = "PRESET[:SLOT]", value_parser = value::metal)]
     metal: Vec<MetalChoice>,
+    /// Finish for the material SLOT, see below; for those with a --metal without one, without --metal for all; repeatable
+    #[arg(long, value_name = "ID[:SLOT]", value_parser = value::metal)]
+    finish: Vec<MetalChoice>,
+    /// Coat for the material SLOT, see below; without one as --finish; repeatable
+    #[arg(long, value_name = "ID[:SLOT]", value_parser = value::metal)]
+    coat: Vec<MetalChoice>,
     /// Roughness factor, 0 to 1, of the materials that got a --metal; without --metal of all
     #[arg(long, value_name = "R", value_parser = value::number(0.0, 1.0))]
     roughness: Option<f32>,
@@ -107,13 +114,16 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     Ok(Exit::Ok)
 }
 
-/// The settings that `--set` takes, from their declaration.
+/// The settings that `--set` takes, from their declaration, and what `--finish` and `--coat` take.
 fn settings_help() -> String {
+    let ids = |kind| finish::list(kind).map(|finish| finish.id.as_str()).collect::<Vec<_>>().join(", ");
+    let (finishes, coats) = (ids(finish::Kind::Finish), ids(finish::Kind::Coat));
     let line = |spec: &ParamSpec| {
         let value = Settings::new(classical::PARAMS).text(spec.key).unwrap_or_default();
         format!("  {}: {} [default: {value}]\n      {}\n", spec.key, spec.kind, spec.help)
     };
-    format!("Settings:\n{}", classical::PARAMS.iter().map(line).collect::<String>())
+    let settings: String = classical::PARAMS.iter().map(line).collect();
+    format!("Settings:\n{settings}Finishes: {finishes}\nCoats: {coats}\n")
 }
 
 /// `--set` over what the document says.
@@ -125,7 +135,7 @@ fn settings(list: &[(String, String)], document: Option<&Document>) -> Result<Se
     Ok(settings)
 }
 
-/// Applies `--metal`, `--roughness` and `--anisotropy`; returns what the user should know.
+/// Applies `--metal`, `--finish`, `--coat`, `--roughness` and `--anisotropy`; returns what the user should know.
 fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<Vec<String>, Failure> {
     let mut notices = Vec::new();
     let mut changed = vec![false; scene.materials.len()];
@@ -148,12 +158,38 @@ fn set_materials(scene: &mut Scene, args: &Args, settings: &Settings) -> Result<
         }
     }
     let all = args.metal.is_empty();
-    let targets = scene.materials.iter_mut().zip(&changed).filter(|(_, changed)| all || **changed);
-    for (Material { roughness, anisotropy, .. }, _) in targets {
+    let targets: Vec<usize> = (0..changed.len()).filter(|slot| all || changed[*slot]).collect();
+    set_finishes(scene, finish::Kind::Finish, &args.finish, &targets)?;
+    set_finishes(scene, finish::Kind::Coat, &args.coat, &targets)?;
+    for slot in targets {
+        let Material { roughness, anisotropy, .. } = &mut scene.materials[slot];
         *roughness = args.roughness.unwrap_or(*roughness);
         *anisotropy = args.anisotropy.unwrap_or(*anisotropy);
     }
     Ok(notices)
+}
+
+/// Applies `--finish` or `--coat`; without a slot to `targets`.
+fn set_finishes(
+    scene: &mut Scene,
+    kind: finish::Kind,
+    choices: &[MetalChoice],
+    targets: &[usize],
+) -> Result<(), Failure> {
+    for MetalChoice { preset, slot } in choices {
+        let failure = |e: &dyn std::fmt::Display| Failure::usage(format!("--{} {preset}: {e}", kind.word()));
+        let finish = finish::find(kind, preset).map_err(|e| failure(&e))?;
+        let slots = match slot {
+            Some(slot) => {
+                slot.among("material", scene.materials.iter().map(|m| m.name.as_str())).map_err(|e| failure(&e))?
+            }
+            None => targets.to_vec(),
+        };
+        for slot in slots {
+            finish.apply(&mut scene.materials[slot]);
+        }
+    }
+    Ok(())
 }
 
 /// A preset's file may be at fault, or the name that was given.

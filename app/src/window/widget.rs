@@ -111,7 +111,12 @@ fn control_ui(
     match (spec.kind, value) {
         (ParamKind::Number { min, max, .. }, ParamValue::Number(number)) => {
             let small = matches!(spec.default(), ParamValue::Number(v) if far_above(max, v)) && max < LOGARITHMIC;
-            let places = if max - min > 20.0 && !small { 1 } else { 3 };
+            let places = match min {
+                // A range that begins at hundredths shows them.
+                0.005..0.05 => 2,
+                _ if max - min > 20.0 && !small => 1,
+                _ => 3,
+            };
             let (changed, ended) = number_ui(ui, (spec, min, max, places), number, width, name, hover);
             ParamEdit { change: changed.map(|v| Change::Set(ParamValue::Number(v))), ended }
         }

@@ -7,10 +7,11 @@ use super::{
     Assignment, CameraEntry, Document, MaterialEntry, ObjectEntry, PresetUse, TextureChoice, material_keys, role_key,
 };
 use crate::lighting::classical;
+use crate::material::finish::Finish;
 use crate::material::preset::{self, Preset};
 use crate::material::saved::SavedMaterial;
 use crate::material::{Material, TextureRole, params};
-use crate::param::{self, ParamError, ParamValue};
+use crate::param::{self, ParamError, ParamSpec, ParamValue};
 use crate::scene::Scene;
 
 /// What [`Document::assign_preset`] does with the textures of the material.
@@ -112,15 +113,25 @@ impl Document {
         entry.preset = None;
         entry.values.clear();
         for spec in params::PARAMS {
-            let value = saved.value(spec.key).filter(|value| params::get(base, spec.key) != Some(*value));
-            if let Some(value) = value {
-                entry.values.insert(spec.key.into(), spec.json(value));
+            if let Some(value) = saved.value(spec.key) {
+                entry.set(spec, value, base);
             }
         }
         entry.set_textures(textures);
         if let Some(metal) = saved.constants() {
             self.assign_preset(index, metal, Assigned::KeepTextures);
             self.set_fresnel(index, saved.metal.as_ref().and_then(|metal| metal.fresnel.as_deref()));
+        }
+    }
+
+    /// Puts a finish or a coat on a material: all factors that one of its kind sets, so that nothing is left of the one
+    /// before. `base` is as for [`Document::assign_saved`].
+    pub fn assign_finish(&mut self, index: usize, finish: &Finish, base: &Material) {
+        let Some(entry) = self.material_mut(index) else { return };
+        for (key, value) in finish.values() {
+            if let Ok(spec) = param::find(params::PARAMS, key) {
+                entry.set(spec, value, base);
+            }
         }
     }
 
@@ -314,6 +325,15 @@ impl Document {
 }
 
 impl MaterialEntry {
+    /// Stores a factor; one that `base` has already is not stored.
+    fn set(&mut self, spec: &ParamSpec, value: ParamValue, base: &Material) {
+        if params::get(base, spec.key) == Some(value) {
+            self.values.remove(spec.key);
+        } else {
+            self.values.insert(spec.key.into(), spec.json(value));
+        }
+    }
+
     /// Clears all textures where they are to be replaced.
     fn set_textures(&mut self, textures: Assigned) {
         if textures == Assigned::ReplaceTextures {

@@ -5,6 +5,7 @@ use serde_json::json;
 use super::*;
 use crate::file::testing::Folder;
 use crate::material::Reflectance;
+use crate::material::finish;
 use crate::material::preset;
 use crate::scene::Scene;
 
@@ -313,4 +314,27 @@ fn a_saved_material_brings_its_factors_and_metal_to_any_material() {
     assert_eq!(document.materials[0].preset.as_ref().unwrap().fresnel.as_deref(), Some("schlick"));
     document.assign_saved(0, &saved(&base[0], None), &base[0], Assigned::KeepTextures);
     assert_eq!((&document.materials[0].preset, document.materials[0].values.len()), (&None, 0));
+}
+
+#[test]
+fn a_finish_is_one_step_and_takes_off_the_one_before_it() {
+    let opened = workbench();
+    let base = resolve(&opened.document, &opened.sources, &mut Curves::default()).base;
+    let mut history = History::new(opened.document);
+    let finish = |id| finish::find(finish::Kind::Finish, id).unwrap();
+    let clear = finish::find(finish::Kind::Coat, "clear-lacquer").unwrap();
+    assert!(history.edit("Finish", "a", 0.0, |d| d.assign_finish(0, finish("hammered"), &base[0])));
+    assert!(history.edit("Coat", "a", 1.0, |d| d.assign_finish(0, clear, &base[0])));
+    let of = |document: &Document| {
+        let scene = resolve(document, &opened.sources, &mut Curves::default()).scene;
+        finish::Kind::ALL.map(|kind| finish::of(&scene.materials[0], kind).map(|finish| finish.id.clone()).unwrap())
+    };
+    assert_eq!(of(history.current()), ["hammered", "clear-lacquer"]);
+    assert!(history.edit("Finish", "a", 2.0, |d| d.assign_finish(0, finish("mirror"), &base[0])));
+    assert_eq!(of(history.current()), ["mirror", "clear-lacquer"]);
+    let stored: Vec<&String> = history.current().materials[0].values.keys().collect();
+    assert!(!stored.iter().any(|key| *key == "micro-normal"), "what the source has is not stored: {stored:?}");
+    history.undo();
+    assert_eq!(of(history.current()), ["hammered", "clear-lacquer"]);
+    assert!(!history.edit("Finish", "a", 3.0, |d| d.assign_finish(99, finish("mirror"), &base[0])));
 }

@@ -1,5 +1,6 @@
 //! Materials: what a surface is made of, before textures are looked up.
 
+pub mod finish;
 pub mod params;
 pub mod preset;
 pub mod saved;
@@ -10,6 +11,7 @@ use std::sync::Arc;
 use glam::{Mat3, Vec3};
 
 use crate::surface::fresnel::Fresnel;
+use crate::surface::micro_normal;
 
 pub use texture::TextureRole;
 
@@ -78,6 +80,12 @@ pub struct Material {
     pub anisotropy_rotation: f32,
     /// RG direction in [-1, 1], B strength.
     pub anisotropy_texture: Option<TextureRef>,
+    /// Procedural bumps under the coat.
+    pub micro_normal: micro_normal::Kind,
+    /// Size of a bump in millimetres of the object at the size at which it stands in the scene.
+    pub micro_size_mm: f32,
+    /// Root mean square slope of the bumps, 0..1.
+    pub micro_depth: f32,
 }
 
 /// Where the reflectance of the metal part comes from.
@@ -195,6 +203,9 @@ impl Default for Material {
             anisotropy: 0.0,
             anisotropy_rotation: 0.0,
             anisotropy_texture: None,
+            micro_normal: micro_normal::Kind::None,
+            micro_size_mm: 5.0,
+            micro_depth: 0.2,
         }
     }
 }

@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::{AlphaMode, Material};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue};
+use crate::surface::micro_normal;
 
 /// Values by key.
 pub type Values = BTreeMap<&'static str, ParamValue>;
@@ -41,6 +42,34 @@ pub const PARAMS: &[ParamSpec] = &[
             "Direction of the brushing, counter-clockwise from the tangent.",
         )
     },
+    ParamSpec {
+        kind: ParamKind::Choice { options: &micro_normal::Kind::IDS, default: 0 },
+        ..number(
+            "micro-normal",
+            "Bumps",
+            1.0,
+            0.0,
+            "Relief of the finish: grain of blasting, bumps of a cast skin, dents of a hammer. Needs no texture coordinates.",
+        )
+    },
+    ParamSpec {
+        unit: "mm",
+        kind: ParamKind::Number { min: 0.01, max: 1000.0, default: 5.0 },
+        ..number(
+            "micro-size",
+            "Bump size",
+            1000.0,
+            5.0,
+            "Width of a bump or dent. Bumps finer than two pixels are shown as roughness.",
+        )
+    },
+    number(
+        "micro-depth",
+        "Bump depth",
+        1.0,
+        0.2,
+        "Root mean square slope of the bumps: 0.1 is planished, 0.2 hammered, 0.4 rough-cast.",
+    ),
     number("coat", "Coat", 1.0, 0.0, "Weight of a clear lacquer (index 1.5) over everything."),
     number("coat-roughness", "Coat roughness", 1.0, 0.0, "Roughness of the lacquer."),
     ParamSpec {
@@ -76,6 +105,9 @@ pub fn get(material: &Material, key: &str) -> Option<ParamValue> {
         "roughness" => number(material.roughness),
         "anisotropy" => number(material.anisotropy),
         "anisotropy-rotation" => number(wrapped_degrees(material.anisotropy_rotation)),
+        "micro-normal" => ParamValue::Choice(material.micro_normal as usize),
+        "micro-size" => number(material.micro_size_mm),
+        "micro-depth" => number(material.micro_depth),
         "coat" => number(material.coat),
         "coat-roughness" => number(material.coat_roughness),
         "ior" => number(material.ior),
@@ -107,11 +139,15 @@ pub fn get(material: &Material, key: &str) -> Option<ParamValue> {
 
 /// Writes values over those of a material; keys and kinds that [`PARAMS`] does not declare are left out.
 pub fn apply(material: &mut Material, values: &Values) {
-    // Colour and strength, mode and cutoff make one field each: read before either is written.
+    // Colour and strength, mode and cutoff make one field each: read before either is written, and left alone where
+    // neither is.
+    let given = |keys: [&str; 2]| keys.iter().any(|key| values.contains_key(key));
     let merged = |key: &str| values.get(key).copied().or_else(|| get(material, key));
     let pair = (merged("emission-color"), merged("emission-strength"));
     let emission = match pair {
-        (Some(ParamValue::Color(c)), Some(ParamValue::Number(s))) => (s * DVec3::from(c)).as_vec3(),
+        (Some(ParamValue::Color(c)), Some(ParamValue::Number(s))) if given(["emission-color", "emission-strength"]) => {
+            (s * DVec3::from(c)).as_vec3()
+        }
         _ => material.emission,
     };
     let alpha_mode = match (merged("alpha-mode"), merged("alpha-cutoff")) {
@@ -133,7 +169,12 @@ pub fn apply(material: &mut Material, values: &Values) {
                 "unlit" => material.unlit = on,
                 _ => {}
             },
-            ParamValue::Integer(_) | ParamValue::Choice(_) => {}
+            ParamValue::Choice(index) => {
+                if let ("micro-normal", Some(kind)) = (*key, micro_normal::Kind::ALL.get(index)) {
+                    material.micro_normal = *kind;
+                }
+            }
+            ParamValue::Integer(_) => {}
         }
     }
     material.emission = emission;
@@ -149,6 +190,8 @@ fn set_number(material: &mut Material, key: &str, value: f32) {
             material.anisotropy_rotation = value.to_radians();
             return;
         }
+        "micro-size" => &mut material.micro_size_mm,
+        "micro-depth" => &mut material.micro_depth,
         "coat" => &mut material.coat,
         "coat-roughness" => &mut material.coat_roughness,
         "ior" => &mut material.ior,

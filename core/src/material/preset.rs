@@ -9,7 +9,9 @@ mod library;
 mod text;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION};
+pub(super) use check::{ID_REMEDY, is_id};
 pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
+pub(super) use library::hint;
 pub use library::{find, library};
 
 use std::borrow::Cow;

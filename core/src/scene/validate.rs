@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::{Environment, Image, Instance, Light, LightKind, Mesh, Scene, Texels};
 use crate::material::{Material, TextureRef};
+use crate::surface::micro_normal;
 
 /// A unit vector stored in f32, after interpolation of rounding through an exporter, is this close to length 1.
 const UNIT_TOLERANCE: f32 = 1e-3;
@@ -110,6 +111,9 @@ fn check_material(scene: &Scene, material: &Material, at: &mut At<'_>) {
     let unit = [m.opacity, m.metallic, m.roughness, m.occlusion_strength, m.specular, m.coat, m.coat_roughness];
     at.unless(unit.iter().all(|v| (0.0..=1.0).contains(v)), "a factor is outside 0 to 1");
     at.unless((0.0..=1.0).contains(&m.anisotropy), "the anisotropy is outside 0 to 1");
+    at.unless((0.0..=1.0).contains(&m.micro_depth), "the depth of the bumps is outside 0 to 1");
+    let sizes = micro_normal::SIZE_MIN_MM..=micro_normal::SIZE_MAX_MM;
+    at.unless(sizes.contains(&m.micro_size_mm), "the size of the bumps is outside 0.01 mm to 1 m");
     let finite = [m.normal_scale, m.coat_normal_scale, m.ior, m.anisotropy_rotation];
     at.unless(finite.iter().all(|v| v.is_finite()), "a factor is not finite");
     let colors = [m.base_color, m.emission, m.specular_color];

@@ -9,6 +9,7 @@ pub mod fresnel;
 pub mod ggx;
 pub mod lambert;
 pub mod layered;
+pub mod micro_normal;
 
 #[cfg(test)]
 mod facts;
@@ -19,7 +20,7 @@ use crate::leaf::Leaf;
 
 /// The WGSL twins of this folder.
 pub static LEAVES: &[&Leaf] =
-    &[&fresnel::WGSL, &ggx::WGSL, &lambert::WGSL, &dielectric::WGSL, &coat::WGSL, &layered::WGSL];
+    &[&fresnel::WGSL, &ggx::WGSL, &lambert::WGSL, &dielectric::WGSL, &coat::WGSL, &layered::WGSL, &micro_normal::WGSL];
 
 /// A direction drawn from a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]

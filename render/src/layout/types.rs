@@ -197,13 +197,13 @@ shared! {
         fresnel_c0: Vec3,
         albedo_table: u32,
         fresnel_c1: Vec3,
-        pad0: u32,
+        micro_normal: u32,
         fresnel_c2: Vec3,
-        pad1: u32,
+        micro_size: f32,
         fresnel_c3: Vec3,
-        pad2: u32,
+        micro_depth: f32,
         fresnel_mean: Vec3,
-        pad3: u32,
+        pad0: u32,
         textures: [TextureSlot; TEXTURE_COUNT],
     }
 }

@@ -122,13 +122,16 @@ struct MaterialData {
     // First entry of the split-sum table.
     albedo_table: u32,
     fresnel_c1: vec3f,
-    pad0: u32,
+    // One of the MICRO_NORMAL_ kinds.
+    micro_normal: u32,
     fresnel_c2: vec3f,
-    pad1: u32,
+    // In metres.
+    micro_size: f32,
     fresnel_c3: vec3f,
-    pad2: u32,
+    // Root mean square slope.
+    micro_depth: f32,
     fresnel_mean: vec3f,
-    pad3: u32,
+    pad0: u32,
     textures: array<TextureSlot, 11>,
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use burnish_core::material::{AlphaMode, Material, Reflectance, Sampler, TextureRef, TextureRole};
 use burnish_core::scene::{Image, Scene};
+use burnish_core::surface::micro_normal;
 use glam::{Vec2, Vec4};
 
 use crate::device::Gpu;
@@ -62,6 +63,8 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
     if matches!(m.reflectance, Reflectance::Preset { .. }) {
         flags |= MATERIAL_PRESET;
     }
+    // Bumps without depth cost as much as others.
+    let bumps = if m.micro_depth > 0.0 { m.micro_normal } else { micro_normal::Kind::None };
     let fresnel = tables.fresnel(index);
     let textures = m.textures();
     MaterialData {
@@ -88,13 +91,13 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
         fresnel_c0: fresnel.numbers[1],
         albedo_table: fresnel.albedo_table,
         fresnel_c1: fresnel.numbers[2],
-        pad0: 0,
+        micro_normal: bumps as u32,
         fresnel_c2: fresnel.numbers[3],
-        pad1: 0,
+        micro_size: 1e-3 * m.micro_size_mm,
         fresnel_c3: fresnel.numbers[4],
-        pad2: 0,
+        micro_depth: m.micro_depth,
         fresnel_mean: fresnel.mean,
-        pad3: 0,
+        pad0: 0,
         textures: std::array::from_fn(|i| match textures[i] {
             Some(texture) if !bypassed(m, TextureRole::ALL[i]) => TextureSlot::new(texture),
             _ => TextureSlot::absent(),

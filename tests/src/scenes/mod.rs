@@ -12,8 +12,9 @@ use burnish_core::{
         Camera, Environment, Scene,
         gallery::shape::{self, Profile},
     },
+    surface::micro_normal,
 };
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
 
 pub use lights_and_alpha::lights_and_alpha;
 use stage::{Stage, metal, texture};
@@ -26,6 +27,7 @@ pub const ALL: &[Entry] = &[
     ("roughness_row", roughness_row),
     ("anisotropy", anisotropy),
     ("layers", layers),
+    ("bumps", bumps),
     ("lights_and_alpha", lights_and_alpha),
 ];
 
@@ -65,6 +67,32 @@ pub fn anisotropy() -> Scene {
         let rotation = step * std::f32::consts::FRAC_PI_2;
         let turned = stage.material(Material { anisotropy: 0.8, anisotropy_rotation: rotation, ..metal(COPPER, 0.2) });
         stage.place(ball, turned, cell(column, 5, 2, 3));
+    }
+    stage.sun(Vec3::new(-0.4, -0.7, -0.6), 2.0);
+    stage.finish(Vec3::new(0.0, 0.1, 2.1), 0.34)
+}
+
+/// Balls with bumps. From the top: hammered, cast and grain under dents of growing size, bare in the first row, at half of
+/// the scale in the second, under a coat in the third. The last column turns and is mirrored.
+pub fn bumps() -> Scene {
+    let mut stage = Stage::new("bumps");
+    let ball = stage.mesh(shape::sphere(BALL, 28));
+    let kinds =
+        [(micro_normal::Kind::Hammered, 0.15), (micro_normal::Kind::Cast, 0.3), (micro_normal::Kind::Grain, 0.3)];
+    for (row, (micro_normal, micro_depth)) in kinds.into_iter().enumerate() {
+        let plain = Material { micro_normal, micro_depth, ..metal(COPPER, 0.2) };
+        // Resolved, half resolved, too fine for a pixel.
+        for (column, micro_size_mm) in [30.0, 8.0, 2.0].into_iter().enumerate() {
+            let material = stage.material(Material { micro_size_mm, ..plain.clone() });
+            stage.place(ball, material, cell(column, 6, row, 3));
+        }
+        let large = Material { micro_size_mm: 30.0, ..plain };
+        let coated = stage.material(Material { coat: 1.0, coat_roughness: 0.05, ..large.clone() });
+        stage.place(ball, coated, cell(3, 6, row, 3));
+        let bare = stage.material(large);
+        let turned = Affine3A::from_quat(Quat::from_euler(EulerRot::XYZ, 0.5, 1.0, 1.5));
+        stage.place(ball, bare, cell(4, 6, row, 3) * turned);
+        stage.place(ball, bare, cell(5, 6, row, 3) * Affine3A::from_scale(Vec3::new(-0.5, 0.5, 0.5)));
     }
     stage.sun(Vec3::new(-0.4, -0.7, -0.6), 2.0);
     stage.finish(Vec3::new(0.0, 0.1, 2.1), 0.34)

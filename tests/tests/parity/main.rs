@@ -14,6 +14,7 @@ mod harness;
 mod lambert;
 mod layered;
 mod math;
+mod micro_normal;
 mod surface;
 mod tone;
 
@@ -45,6 +46,7 @@ fn cases() -> Vec<Case> {
     cases.extend(dielectric::cases());
     cases.extend(coat::cases());
     cases.extend(layered::cases());
+    cases.extend(micro_normal::cases());
     cases.extend(classical::cases());
     cases
 }

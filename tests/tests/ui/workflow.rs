@@ -6,6 +6,9 @@ use std::time::{Duration, SystemTime};
 use burnish::window::{Command, Pane, Request};
 use burnish_core::document::Document;
 use burnish_core::material::Reflectance;
+use burnish_core::material::finish::{self, Kind};
+use burnish_core::param::ParamValue;
+use burnish_core::surface::micro_normal;
 use burnish_tests::trial;
 use eframe::egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable;
@@ -27,6 +30,7 @@ pub fn trials() -> Vec<Trial> {
         trial("a_model_becomes_gold_and_is_saved_undone_and_opened_again", &[], gold),
         trial("a_model_that_changed_is_reloaded_and_one_that_moved_is_relinked", &[], changed_and_moved),
         trial("commands_about_materials_and_objects_do_what_they_say", &[], commands),
+        trial("a_finish_and_a_coat_are_chosen_by_name_and_taken_back", &[], finishes),
         trial("the_scene_panel_selects_renames_hides_and_assigns", &[], scene_panel),
         trial("the_history_panel_goes_to_any_step", &[], history_panel),
         trial("the_palette_finds_and_does_a_command", &[], palette),
@@ -186,6 +190,40 @@ fn commands() {
     let expected = ["New material", "Paste material", "Duplicate material", "Isolate", "Show all", "Hide"];
     assert_eq!(labels(&bench), expected, "what changes nothing leaves no step");
     bench.workbench().session_mut().go_to(0);
+    assert_eq!(bench.text(), start);
+}
+
+fn finishes() {
+    let mut bench = bench("finish", Some("gallery:workbench"));
+    let pick = |bench: &mut Bench, list: &str, entry: &str| {
+        bench.click_role(Role::ComboBox, list);
+        bench.click_role(Role::Button, entry);
+    };
+    let of = |bench: &Bench| {
+        let material = &bench.session().scene().materials[0];
+        Kind::ALL.map(|kind| finish::of(material, kind).map(|finish| finish.id.as_str()))
+    };
+    let start = bench.text();
+    assert_eq!(of(&bench), [None, Some("none")]);
+    pick(&mut bench, "Finish", "Hammered");
+    assert_eq!(bench.session().scene().materials[0].micro_normal, micro_normal::Kind::Hammered);
+    pick(&mut bench, "Coat", "Satin lacquer");
+    assert_eq!(of(&bench), [Some("hammered"), Some("satin-lacquer")]);
+    let document = bench.session().document().clone();
+    assert_eq!(document.materials[0].value("micro-normal"), Some(ParamValue::Choice(3)));
+    assert_eq!(document.materials[0].value("coat"), Some(ParamValue::Number(1.0)));
+    pick(&mut bench, "Finish", "Mirror");
+    assert_eq!(bench.session().scene().materials[0].micro_normal, micro_normal::Kind::None, "the dents are gone");
+    assert_eq!(of(&bench), [Some("mirror"), Some("satin-lacquer")]);
+    assert_eq!(labels(&bench), ["Finish", "Coat", "Finish"]);
+
+    bench.slide("Roughness", 0.35);
+    assert_eq!(of(&bench), [None, Some("satin-lacquer")]);
+    let shown = bench.window.get_by_role_and_label(Role::ComboBox, "Finish");
+    assert_eq!(egui_kittest::kittest::NodeT::accesskit_node(&shown).value().as_deref(), Some("custom"));
+    for _ in 0..4 {
+        bench.keys(Modifiers::COMMAND, Key::Z);
+    }
     assert_eq!(bench.text(), start);
 }
 

@@ -12,6 +12,15 @@ pub const VERSION: u32 = 1;
 /// and blue, less than 0.5 % each lies outside.
 pub const REQUIRED_RANGE_NM: (f64, f64) = (400.0, 700.0);
 
+/// What a text must be to pass [`is_id`].
+pub(in crate::material) const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
+
+/// True for what may name a file of `presets`.
+pub(in crate::material) fn is_id(id: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    !id.is_empty() && id.len() <= MAX_ID && !id.starts_with('.') && id.chars().all(allowed)
+}
+
 impl Preset {
     /// Refuses what cannot be a metal; `origin` (file or id) starts the message.
     pub fn check(&self, origin: &str) -> Result<(), PresetError> {
@@ -23,10 +32,8 @@ impl Preset {
         if self.version != VERSION {
             return fault("version", format!("is {}", self.version), "this program reads version 1");
         }
-        let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
-        if self.id.is_empty() || self.id.len() > MAX_ID || self.id.starts_with('.') || !self.id.chars().all(allowed) {
-            let remedy = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
-            return fault("id", format!("is `{}`", self.id), remedy);
+        if !is_id(&self.id) {
+            return fault("id", format!("is `{}`", self.id), ID_REMEDY);
         }
         if self.name.trim().is_empty() {
             return fault("name", "is empty".into(), "name the metal");

@@ -89,20 +89,26 @@ pub fn find(id_or_path: &str) -> Result<Preset, PresetError> {
     let found = by_id
         .or_else(|| library().iter().find(|p| p.id.to_lowercase() == lower))
         .or_else(|| library().iter().find(|p| p.name.to_lowercase() == lower));
-    found.cloned().ok_or_else(|| PresetError::Unknown { wanted: wanted.into(), hint: hint(&lower) })
+    found.cloned().ok_or_else(|| PresetError::Unknown { wanted: wanted.into(), hint: hint(&lower, &known()) })
 }
 
-/// Ids whose id or name is like the text: begins as it does, contains it, or is at most two edits away; else all.
-fn hint(lower: &str) -> String {
+/// Ids and names of all presets.
+fn known() -> Vec<(&'static str, &'static str)> {
+    library().iter().map(|p| (p.id.as_str(), p.name.as_str())).collect()
+}
+
+/// Of ids and names, the ids where either is like the text: begins as it does, contains it, or is at most two edits
+/// away; else all.
+pub(in crate::material) fn hint(lower: &str, known: &[(&str, &str)]) -> String {
     let like = |text: &str| {
         let text = text.to_lowercase();
         // One-letter texts are within two edits of every short id.
         let contained = lower.chars().count() > 1 && text.contains(lower);
         contained || (lower.chars().count() > 3 && edits(&text, lower) <= 2)
     };
-    let near: Vec<&str> = library().iter().filter(|p| like(&p.id) || like(&p.name)).map(|p| p.id.as_str()).collect();
+    let near: Vec<&str> = known.iter().filter(|(id, name)| like(id) || like(name)).map(|(id, _)| *id).collect();
     if near.is_empty() {
-        let all: Vec<&str> = library().iter().map(|p| p.id.as_str()).collect();
+        let all: Vec<&str> = known.iter().map(|(id, _)| *id).collect();
         format!("there are {}", all.join(", "))
     } else {
         format!("did you mean {}?", near.join(" or "))

@@ -176,6 +176,18 @@ fn sample_textures(material: u32, c: Coordinates) -> Samples {
     return s;
 }
 
+// Bumps in the frame of the object, in metres, so that they move with it; the gradient is in the world. The frame is
+// what is left of the transform without scale and shear.
+fn bumps_at(in: VertexOut, m: MaterialData, footprint: f32) -> MicroNormal {
+    let world_from_local = instances[in.instance].world_from_local;
+    let axis = safe_normalize(world_from_local[0].xyz, vec3f(1.0, 0.0, 0.0));
+    let own = frame_with_tangent(axis, world_from_local[1].xyz);
+    let p = frame_to_local(own, in.position - world_from_local[3].xyz);
+    var bumps = micro_normal_eval(m.micro_normal, p, m.micro_size, footprint);
+    bumps.gradient = frame_to_world(own, bumps.gradient);
+    return bumps;
+}
+
 // Must be called in uniform control flow: it takes derivatives.
 fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     let c = Coordinates(
@@ -201,6 +213,13 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     texel.coat_normal = side * perturbed(s.coat_normal, m.coat_normal_scale, n, t, b);
     let geometric = safe_normalize(face, side * n);
     texel.geometric_normal = select(-geometric, geometric, dot(geometric, to_viewer) >= 0.0);
+    // The coat lies smooth over the bumps.
+    var lost = 0.0;
+    if m.micro_normal != MICRO_NORMAL_NONE {
+        let bumps = bumps_at(in, m, sqrt(length(face)));
+        texel.normal = micro_normal_bent(texel.normal, texel.geometric_normal, side * m.micro_depth * bumps.gradient);
+        lost = bumps.lost;
+    }
 
     let turn = vec2f(cos(m.anisotropy_rotation), sin(m.anisotropy_rotation));
     let direction = s.anisotropy.xy * 2.0 - 1.0;
@@ -214,6 +233,9 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     let strength = clamp(m.anisotropy * s.anisotropy.z, 0.0, 1.0);
     let alpha = roughness * roughness;
     texel.alpha = max(vec2f(mix(alpha, 1.0, strength * strength), alpha), vec2f(GGX_ALPHA_MIN));
+    if lost > 0.0 {
+        texel.alpha = micro_normal_widened(texel.alpha, m.micro_depth, lost);
+    }
     texel.metallic = select(clamp(m.metallic * s.metallic, 0.0, 1.0), 1.0, (m.flags & MATERIAL_PRESET) != 0u);
     texel.base_color = clamp(base, vec3f(0.0), vec3f(1.0));
     texel.occlusion = 1.0 + m.occlusion_strength * (s.occlusion - 1.0);

@@ -1,6 +1,7 @@
-//! The material inspector: which material, its metal, its factors, its textures.
+//! The material inspector: which material, its metal, its finish, its factors, its textures.
 
 mod factors;
+mod finish;
 mod header;
 mod metal;
 mod textures;
@@ -35,6 +36,7 @@ impl MaterialPanel {
             header.ui(ui, context, index);
             ui.separator();
             metal::metal_ui(ui, context, index);
+            finish::finish_ui(ui, context, index);
             ui.separator();
             factors::factors_ui(ui, context, index);
             textures.ui(ui, context, index);

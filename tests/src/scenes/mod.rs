@@ -165,12 +165,26 @@ pub fn bent_square(mapped: bool) -> Scene {
     }
     let material = stage.material(material);
     stage.put(square, material, Affine3A::IDENTITY);
-    // No two directions are alike, and the map is small: it is quick to filter.
-    let sky = (0..16 * 8).map(|i| Vec3::new((i % 16) as f32, (i / 16) as f32, 4.0)).collect();
     let mut scene = stage.finish(Vec3::new(0.3, 0.4, 3.0), 0.3);
-    scene.environment = Some(Arc::new(Environment::new("sky", 16, 8, sky)));
+    scene.environment = Some(sky());
     scene.cameras.push(Camera::look_at("behind", Vec3::new(0.3, 0.4, -3.0), Vec3::ZERO, 0.3));
     scene
+}
+
+/// A square that fills the view, under a sky without two directions alike.
+pub fn plate(material: Material) -> Scene {
+    let mut stage = Stage::new("plate");
+    let material = stage.material(material);
+    stage.put(shape::plane(2.0, 2.0), material, Affine3A::IDENTITY);
+    let mut scene = stage.finish(Vec3::new(0.3, 0.4, 3.0), 0.3);
+    scene.environment = Some(sky());
+    scene
+}
+
+/// No two directions are alike, and the map is small: it is quick to filter.
+fn sky() -> Arc<Environment> {
+    let texels = (0..16 * 8).map(|i| Vec3::new((i % 16) as f32, (i / 16) as f32, 4.0)).collect();
+    Arc::new(Environment::new("sky", 16, 8, texels))
 }
 
 /// A ball whose vertices are coloured by their normals.

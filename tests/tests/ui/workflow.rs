@@ -217,7 +217,7 @@ fn finishes() {
     assert_eq!(of(&bench), [Some("mirror"), Some("satin-lacquer")]);
     assert_eq!(labels(&bench), ["Finish", "Coat", "Finish"]);
 
-    bench.slide("Roughness", 0.35);
+    bench.slide("Roughness", 0.5);
     assert_eq!(of(&bench), [None, Some("satin-lacquer")]);
     let shown = bench.window.get_by_role_and_label(Role::ComboBox, "Finish");
     assert_eq!(egui_kittest::kittest::NodeT::accesskit_node(&shown).value().as_deref(), Some("custom"));

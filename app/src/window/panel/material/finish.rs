@@ -11,9 +11,12 @@ const CUSTOM: &str = "custom";
 
 /// Shows both choices.
 pub fn finish_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
-    for kind in Kind::ALL {
-        kind_ui(ui, context, index, kind);
-    }
+    // A group of factors is called Coat as well.
+    ui.push_id("finish", |ui| {
+        for kind in Kind::ALL {
+            kind_ui(ui, context, index, kind);
+        }
+    });
 }
 
 fn kind_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, kind: Kind) {

@@ -131,7 +131,7 @@ pub(crate) struct MeshPipelines {
     layout: wgpu::PipelineLayout,
     kind: MeshKind,
     module: OnceLock<wgpu::ShaderModule>,
-    variants: [OnceLock<wgpu::RenderPipeline>; 4],
+    variants: [OnceLock<wgpu::RenderPipeline>; Variant::ALL.len()],
 }
 
 /// What tells one mesh pass from another.
@@ -158,11 +158,16 @@ impl MeshPipelines {
 
     /// The pipeline of a variant.
     pub fn get(&self, variant: Variant) -> &wgpu::RenderPipeline {
+        // Depth has no bumps.
+        let colored = self.kind.targets.as_ref().is_some_and(|targets| !targets.is_empty());
+        let variant = Variant { bumpy: variant.bumpy && colored, ..variant };
         self.variants[variant.index()].get_or_init(|| self.create(variant))
     }
 
     fn create(&self, variant: Variant) -> wgpu::RenderPipeline {
         let MeshPipelines { device, layout, kind, module, .. } = self;
+        let mut constants = kind.constants.clone();
+        constants.push(("bumpy", f64::from(u8::from(variant.bumpy))));
         let module = module.get_or_init(|| kind.shader.module(device));
         let mut primitive = variant.primitive();
         if kind.both_sides {
@@ -183,10 +188,7 @@ impl MeshPipelines {
             fragment: kind.targets.as_ref().map(|targets| wgpu::FragmentState {
                 module,
                 entry_point: Some("fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &kind.constants,
-                    ..Default::default()
-                },
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
                 targets,
             }),
             multiview_mask: None,

@@ -63,8 +63,6 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
     if matches!(m.reflectance, Reflectance::Preset { .. }) {
         flags |= MATERIAL_PRESET;
     }
-    // Bumps without depth cost as much as others.
-    let bumps = if m.micro_depth > 0.0 { m.micro_normal } else { micro_normal::Kind::None };
     let fresnel = tables.fresnel(index);
     let textures = m.textures();
     MaterialData {
@@ -91,7 +89,7 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
         fresnel_c0: fresnel.numbers[1],
         albedo_table: fresnel.albedo_table,
         fresnel_c1: fresnel.numbers[2],
-        micro_normal: bumps as u32,
+        micro_normal: m.micro_normal as u32,
         fresnel_c2: fresnel.numbers[3],
         micro_size: 1e-3 * m.micro_size_mm,
         fresnel_c3: fresnel.numbers[4],
@@ -103,6 +101,11 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
             _ => TextureSlot::absent(),
         }),
     }
+}
+
+/// True where bumps change a pixel.
+pub(crate) fn is_bumpy(m: &Material) -> bool {
+    m.micro_normal != micro_normal::Kind::None && m.micro_depth > 0.0
 }
 
 /// A preset bypasses the base colour's texture, but a mask in its alpha still cuts.

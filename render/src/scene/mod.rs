@@ -40,27 +40,33 @@ pub struct Draw {
     pub center: Vec3,
 }
 
-/// Rasteriser state of a draw.
+/// Rasteriser state of a draw, and what its shader need not do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// Drawn from both sides.
     pub double_sided: bool,
     /// The transform turns the winding round.
     pub mirrored: bool,
+    /// The material has procedural bumps. A software rasteriser computes both sides of a branch, so that others would
+    /// pay for them.
+    pub bumpy: bool,
 }
 
 impl Variant {
     /// All of them; `index` gives the place in this list.
-    pub const ALL: [Variant; 4] = [
-        Variant { double_sided: false, mirrored: false },
-        Variant { double_sided: false, mirrored: true },
-        Variant { double_sided: true, mirrored: false },
-        Variant { double_sided: true, mirrored: true },
-    ];
+    pub const ALL: [Variant; 8] = {
+        let mut all = [Variant { double_sided: false, mirrored: false, bumpy: false }; 8];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = Variant { bumpy: i & 4 != 0, double_sided: i & 2 != 0, mirrored: i & 1 != 0 };
+            i += 1;
+        }
+        all
+    };
 
     /// Place in [`Variant::ALL`].
     pub fn index(self) -> usize {
-        2 * usize::from(self.double_sided) + usize::from(self.mirrored)
+        4 * usize::from(self.bumpy) + 2 * usize::from(self.double_sided) + usize::from(self.mirrored)
     }
 
     /// Culling and winding.
@@ -124,7 +130,7 @@ fn draw_list(scene: &Scene, geometry: &Geometry) -> Vec<Draw> {
             material: instance.material,
             indices: range.indices.clone(),
             base_vertex: range.base_vertex,
-            variant: Variant { double_sided: material.double_sided, mirrored },
+            variant: Variant { double_sided: material.double_sided, mirrored, bumpy: material::is_bumpy(material) },
             blended: material.alpha_mode == AlphaMode::Blend,
             masked: matches!(material.alpha_mode, AlphaMode::Mask { .. }),
             center: instance.world_from_local.transform_point3(range.center),

@@ -86,6 +86,11 @@ fn with_an_adapter() -> Vec<Trial> {
         trial("every example of the README runs", &[Need::Gpu], rendering::readme_examples_run),
         trial("render shows a document as it was saved", &[Need::Gpu], documents::render_shows_a_document),
         trial("a metal goes to the slot that is named", &[Need::Gpu], rendering::a_metal_on_a_slot),
+        trial(
+            "a finish and a coat go where they are named, and unknown ones are refused",
+            &[Need::Gpu],
+            rendering::a_finish_and_a_coat,
+        ),
     ]
 }
 

@@ -7,7 +7,7 @@ use burnish_core::color::rgb::srgb_from_linear;
 use burnish_core::file::{Encoding, read_picture};
 use burnish_tests::{repository, scratch_folder};
 
-use super::{OK, Outcome, RESOURCES, TRIANGLE, burnish, text, triangle};
+use super::{OK, Outcome, RESOURCES, TRIANGLE, USAGE, burnish, text, triangle};
 
 /// A 32 by 16 environment in the Radiance format, one grey for all directions: prepared in no time, unlike the studio.
 pub fn grey_environment(folder: &Path) -> PathBuf {
@@ -72,6 +72,30 @@ pub fn a_metal_on_a_slot() {
     assert!(silver.x < 1.3 * silver.z && silver.z > gold.z, "silver is grey: {silver}");
 }
 
+pub fn a_finish_and_a_coat() {
+    let folder = scratch_folder("finish");
+    let model = triangle(&folder);
+    let environment = grey_environment(&folder);
+    let view = ["--camera", "0.3,0.3,1,0.3,0.3,0,20", "--env", text(&environment), "--metal", "Au:red"];
+    let picture = |name: &str, more: &[&str]| {
+        let file = folder.join(name);
+        render(&file, &[&[text(&model)], &view[..], more].concat()).succeeded();
+        read_picture(&file).expect("a picture").0.texels
+    };
+    let mirror = picture("mirror.exr", &["--finish", "mirror"]);
+    assert!(picture("slot.exr", &["--finish", "mirror:red"]) == mirror);
+    assert!(picture("roughness.exr", &["--finish", "satin", "--roughness", "0"]) == mirror, "a factor comes after");
+    assert!(picture("coat.exr", &["--finish", "mirror", "--coat", "Clear lacquer"]) != mirror);
+    assert!(picture("none.exr", &["--finish", "mirror", "--coat", "none"]) == mirror);
+    for (option, value, parts) in [
+        ("--finish", "hamered", ["no finish `hamered`", "did you mean hammered"]),
+        ("--coat", "mirror", ["no coat `mirror`", "clear-lacquer"]),
+        ("--finish", "cast:absent", ["--finish cast", "absent"]),
+    ] {
+        render(&folder.join("x.png"), &[text(&model), option, value]).failed(USAGE, &parts);
+    }
+}
+
 pub fn an_unwritable_picture() {
     let file = scratch_folder("unwritable").join("absent/w.png");
     render(&file, &[]).failed(RESOURCES, &["w.png", "absent", "create it"]);
@@ -120,6 +144,7 @@ pub fn readme_examples_run() {
         "docs/images/window.png",
         "docs/images/light.png",
         "copper.png",
+        "hammered.png",
         "workbench.exr",
         "brass.png",
         "diff.png",

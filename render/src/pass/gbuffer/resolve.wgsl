@@ -176,6 +176,9 @@ fn sample_textures(material: u32, c: Coordinates) -> Samples {
     return s;
 }
 
+// Without it no material has bumps, and their code is left out.
+override bumpy: bool = true;
+
 // Bumps in the frame of the object, in metres, so that they move with it; the gradient is in the world. The frame is
 // what is left of the transform without scale and shear.
 fn bumps_at(in: VertexOut, m: MaterialData, footprint: f32) -> MicroNormal {
@@ -215,7 +218,7 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     texel.geometric_normal = select(-geometric, geometric, dot(geometric, to_viewer) >= 0.0);
     // The coat lies smooth over the bumps.
     var lost = 0.0;
-    if m.micro_normal != MICRO_NORMAL_NONE {
+    if bumpy {
         let bumps = bumps_at(in, m, sqrt(length(face)));
         texel.normal = micro_normal_bent(texel.normal, texel.geometric_normal, side * m.micro_depth * bumps.gradient);
         lost = bumps.lost;

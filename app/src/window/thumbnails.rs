@@ -31,6 +31,8 @@ const FRAMES: u32 = 4;
 const LOOK: u32 = 1;
 /// What a ball is rendered with: it is looked at, not moved.
 const BALL_FORM: Form = Form::Spectral;
+/// Radius of the ball in metres: one for the hand, so that dents of a hammer show.
+const BALL: f32 = 0.05;
 /// Full vertical angle of the camera: a long lens.
 const YFOV: f32 = 0.35;
 /// Radius of the ball as a part of half the picture; the mask is a little smaller, so that its edge is all ball.
@@ -255,13 +257,13 @@ impl Painter {
     }
 }
 
-/// A ball of 1 m under the studio, at the resolution that a small picture needs.
+/// A ball under the studio, at the resolution that a small picture needs.
 fn stage() -> Scene {
     let instance =
         Instance { name: "ball".into(), mesh: 0, material: 0, world_from_local: Affine3A::IDENTITY, visible: true };
     Scene {
         name: "ball".into(),
-        meshes: vec![Arc::new(gallery::shape::sphere(1.0, 96))],
+        meshes: vec![Arc::new(gallery::shape::sphere(BALL, 96))],
         materials: vec![Material::default()],
         instances: vec![instance],
         environment: Some(Arc::new(downsampled(&gallery::studio()))),
@@ -272,7 +274,7 @@ fn stage() -> Scene {
 /// From slightly above, so far away that the ball has [`RADIUS`] in the picture.
 fn camera() -> Camera {
     let half_angle = (RADIUS * (0.5 * YFOV).tan()).atan();
-    let eye = Vec3::new(0.0, 0.2, 1.0).normalize() / half_angle.sin();
+    let eye = Vec3::new(0.0, 0.2, 1.0).normalize() * (BALL / half_angle.sin());
     Camera::look_at("ball", eye, Vec3::ZERO, YFOV)
 }
 

@@ -226,3 +226,15 @@ impl GpuScene {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_variant_stands_at_its_index() {
+        for (place, variant) in Variant::ALL.into_iter().enumerate() {
+            assert_eq!(variant.index(), place);
+        }
+    }
+}

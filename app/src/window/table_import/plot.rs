@@ -10,6 +10,9 @@ const VISIBLE_NM: [f64; 2] = [380.0, 780.0];
 /// Room beside the curves, for the numbers of the axis.
 const BESIDE_NM: f64 = 30.0;
 
+/// Share of the axis at its end that half a number takes.
+const END_SHARE: f64 = 0.07;
+
 /// Colours that are told apart without red and green; n is solid and k dashed besides.
 const N_COLOR: Color32 = Color32::from_rgb(0x2f, 0x8f, 0xd0);
 const K_COLOR: Color32 = Color32::from_rgb(0xd5, 0x5e, 0x00);
@@ -34,7 +37,11 @@ pub fn plot_ui(ui: &mut egui::Ui, metal: &Preset, height: f32) {
         .include_y(0.0)
         .include_x(metal.wavelength_nm.first().copied().unwrap_or_default() - BESIDE_NM)
         .include_x(metal.wavelength_nm.last().copied().unwrap_or_default() + BESIDE_NM)
-        .x_axis_formatter(|mark, _| format!("{:.0} nm", mark.value))
+        .x_axis_formatter(|mark, range| {
+            // A number at the very end would be cut off.
+            let inside = mark.value < range.end() - END_SHARE * (range.end() - range.start());
+            if inside { format!("{:.0} nm", mark.value) } else { String::new() }
+        })
         .label_formatter(label)
         .show(ui, |plot| {
             for nm in VISIBLE_NM {

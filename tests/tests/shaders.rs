@@ -69,6 +69,12 @@ fn every_pass_validates() {
 }
 
 #[test]
+fn what_is_timed_without_a_curve_is_the_same_in_both_languages() {
+    let times = validated("times", &shader::TIMES.source());
+    assert_eq!(constant(&times, "FORM_NONE"), f64::from(burnish_render::times::FORM_NONE));
+}
+
+#[test]
 fn shared_structs_have_the_same_names_offsets_and_sizes() {
     let module = validated("types", include_str!("../../render/src/layout/types.wgsl"));
     let mut layouter = naga::proc::Layouter::default();

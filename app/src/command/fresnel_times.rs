@@ -44,6 +44,8 @@ struct Report {
     errors: Vec<ErrorRow>,
     /// Adapter of the graphics times; null where there is none.
     adapter: Option<String>,
+    /// Why nothing was measured in WGSL.
+    reason: Option<String>,
     times: Vec<TimeRow>,
 }
 
@@ -69,8 +71,10 @@ struct TimeRow {
 pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
     let metal = preset::find(&args.metal).map_err(|e| metal_failure(&args.metal, e))?;
     let errors = PUBLISHED_ERRORS.iter().map(|&(id, published)| error_row(id, published)).collect::<Result<_, _>>()?;
-    let (adapter, times) = time_rows(&metal)?;
-    let report = Report { errors, adapter, times };
+    let gpu = Gpu::new();
+    let times = time_rows(&metal, gpu.as_ref().ok())?;
+    let reason = gpu.as_ref().err().map(ToString::to_string);
+    let report = Report { errors, adapter: gpu.ok().map(|gpu| gpu.report().name.clone()), reason, times };
     if args.json {
         write_json(out, &report)?;
     } else {
@@ -89,28 +93,25 @@ fn error_row(metal: &'static str, published: f64) -> Result<ErrorRow, Failure> {
     Ok(ErrorRow { metal, relative, published })
 }
 
-/// The name of the adapter that was timed, and every form.
-fn time_rows(metal: &Preset) -> Result<(Option<String>, Vec<TimeRow>), Failure> {
+/// Every form; a machine without an adapter still has a processor.
+fn time_rows(metal: &Preset, gpu: Option<&Gpu>) -> Result<Vec<TimeRow>, Failure> {
     let curves: Vec<Fresnel> = Form::ALL.iter().map(|form| metal.fresnel(*form)).collect();
     let cpu = evaluation_times(&curves, ROUNDS);
-    // A machine without an adapter still has a processor.
-    let gpu = Gpu::new().ok();
-    let gpu_times =
-        gpu.as_ref().map(|gpu| times::evaluation_times(gpu, &curves)).transpose().map_err(Failure::resources)?;
+    let gpu_times = gpu.map(|gpu| times::evaluation_times(gpu, &curves)).transpose().map_err(Failure::resources)?;
     let place = Form::ALL.iter().position(|form| *form == EXACT).unwrap_or(0);
     let row = |(i, &form): (usize, &Form)| {
-        let gpu = gpu_times.as_ref().map(|times| (1e9 * times[i], times[i] / times[place]));
+        let gpu = gpu_times.as_ref();
         TimeRow {
             form,
             cpu_ns: 1e9 * cpu[i],
             cpu_relative: cpu[i] / cpu[place],
-            gpu_ns: gpu.map(|v| v.0),
-            gpu_relative: gpu.map(|v| v.1),
+            gpu_ns: gpu.map(|times| 1e9 * times[i]),
+            // A device too fast for the clock.
+            gpu_relative: gpu.filter(|times| times[place] > 0.0).map(|times| times[i] / times[place]),
             published: PUBLISHED_TIMES.iter().find(|(known, _)| *known == form).map(|v| v.1),
         }
     };
-    let rows = Form::ALL.iter().enumerate().map(row).collect();
-    Ok((gpu.map(|gpu| gpu.report().name.clone()), rows))
+    Ok(Form::ALL.iter().enumerate().map(row).collect())
 }
 
 fn write_text(out: &mut dyn Write, report: &Report, metal: &Preset) -> Result<(), Failure> {
@@ -120,9 +121,10 @@ fn write_text(out: &mut dyn Write, report: &Report, metal: &Preset) -> Result<()
         let [a, b, c, published] = [a, b, c, published].map(|v| 100.0 * v);
         writeln!(out, "{metal:6} {a:7.1} {b:7.1} {c:7.1}   {published:9.0}")?;
     }
-    let adapter = report.adapter.as_deref().unwrap_or("no adapter");
+    let without = || format!("not measured ({})", report.reason.as_deref().unwrap_or("no adapter"));
+    let adapter = report.adapter.clone().unwrap_or_else(without);
     writeln!(out, "\nTime for red, green and blue at one angle, {}; {EXACT} is the exact formula", metal.name)?;
-    writeln!(out, "CPU: batches of 1024 on one thread; WGSL: {}", printable(adapter))?;
+    writeln!(out, "CPU: batches of 1024 on one thread; WGSL: {}", printable(&adapter))?;
     writeln!(out, "form            CPU ns      %  WGSL ns      %  published %")?;
     for row in &report.times {
         let number = |v: Option<f64>, decimals: usize| v.map_or("-".into(), |v| format!("{v:.decimals$}"));

@@ -10,28 +10,71 @@ use super::{
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
 use crate::material::params::{self, Values};
-use crate::material::preset::{FormChoice, Preset, Tolerance};
+use crate::material::preset::{Fits, FormChoice, Preset, Tolerance};
 use crate::material::{Material, Reflectance, Sampler, TextureRef, TextureRole};
 use crate::param::ParamSpec;
 use crate::scene::{Environment, Image, Scene, gallery};
-use crate::surface::fresnel::Fresnel;
+use crate::surface::fresnel::{Form, Fresnel, UnknownForm};
 
 /// Built once: it is the light of every document that names none.
 static STUDIO: LazyLock<Arc<Environment>> = LazyLock::new(|| Arc::new(gallery::studio()));
 
+/// Curves that are kept; a preset is often tried and taken back.
+const KEPT: usize = 256;
+
 /// Fresnel curves that were made, so that an edit integrates no spectrum again.
 #[derive(Clone, Debug, Default)]
-pub struct Curves(Vec<(Preset, FormChoice, Arc<Fresnel>)>);
+pub struct Curves {
+    /// The last used first.
+    made: Vec<(Preset, Form, Arc<Fresnel>)>,
+    /// Fits of metals that do not bring theirs, in the same order.
+    fitted: Vec<(Preset, Arc<Fits>)>,
+}
 
 impl Curves {
     /// The curve of a metal in a form.
     pub fn get(&mut self, metal: &Preset, choice: FormChoice) -> Arc<Fresnel> {
-        if let Some((_, _, curve)) = self.0.iter().find(|(known, of, _)| *of == choice && known == metal) {
-            return curve.clone();
-        }
-        let curve = Arc::new(metal.fresnel(choice.form(metal)));
-        self.0.push((metal.clone(), choice, curve.clone()));
+        let form = match choice {
+            FormChoice::Of(form) => form,
+            FormChoice::Cheapest(tolerance) => self.cheapest(metal, tolerance),
+        };
+        let place = self.made.iter().position(|(known, of, _)| *of == form && known == metal);
+        let entry = match place {
+            Some(place) => self.made.remove(place),
+            None => (metal.clone(), form, Arc::new(metal.fresnel(form))),
+        };
+        let curve = entry.2.clone();
+        self.made.insert(0, entry);
+        self.made.truncate(KEPT);
         curve
+    }
+
+    fn cheapest(&mut self, metal: &Preset, tolerance: Tolerance) -> Form {
+        let stored = metal.fits.as_ref().filter(|fits| fits.belong_to(metal));
+        if let Some(fits) = stored {
+            return fits.cheapest(tolerance).form;
+        }
+        let place = self.fitted.iter().position(|(known, _)| known == metal);
+        let entry = match place {
+            Some(place) => self.fitted.remove(place),
+            None => (metal.clone(), Arc::new(Fits::new(metal))),
+        };
+        let form = entry.1.cheapest(tolerance).form;
+        self.fitted.insert(0, entry);
+        self.fitted.truncate(KEPT);
+        form
+    }
+}
+
+impl Document {
+    /// The form of a material's metal: its own where it names one, else that of the lighting settings, whose tolerances
+    /// count for both. The error names a form that this version does not know.
+    pub fn form_choice(&self, own: Option<&str>) -> Result<FormChoice, UnknownForm> {
+        let settings = self.lighting.settings();
+        match own {
+            Some(id) => FormChoice::read(id, classical::tolerance(&settings)),
+            None => Ok(classical::form_choice(&settings)),
+        }
     }
 }
 
@@ -63,7 +106,6 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
 
     let mut images = Images { list: &mut scene.images, by_path: BTreeMap::new(), sources, missing: &mut missing };
     let model_keys = material_keys(&model);
-    let form = classical::form_choice(&document.lighting.settings());
     let (mut base, mut materials) = (Vec::new(), Vec::new());
     for entry in &document.materials {
         let place = entry.source.as_ref().and_then(|source| model_keys.iter().position(|key| key == source));
@@ -71,7 +113,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         let mut material = Material { name: entry.name.clone(), ..start.clone() };
         params::apply(&mut material, &values(entry, &mut notices));
         set_textures(&mut material, entry, &mut images);
-        set_reflectance(&mut material, entry, document, form, curves, &mut notices);
+        set_reflectance(&mut material, entry, document, curves, &mut notices);
         base.push(start);
         materials.push(material);
     }
@@ -170,19 +212,14 @@ fn set_reflectance(
     material: &mut Material,
     entry: &MaterialEntry,
     document: &Document,
-    form: FormChoice,
     curves: &mut Curves,
     notices: &mut Vec<String>,
 ) {
     let Some(used) = &entry.preset else { return };
-    let form = match used.fresnel.as_deref().map(|id| FormChoice::read(id, Tolerance::default())) {
-        None => form,
-        Some(Ok(own)) => own,
-        Some(Err(error)) => {
-            notices.push(format!("material `{}`: {error}; that of the scene is used", entry.name));
-            form
-        }
-    };
+    let form = document.form_choice(used.fresnel.as_deref()).unwrap_or_else(|error| {
+        notices.push(format!("material `{}`: {error}; that of the scene is used", entry.name));
+        classical::form_choice(&document.lighting.settings())
+    });
     match document.metal(&used.id).map(|metal| curves.get(metal, form)) {
         Some(fresnel) => material.reflectance = Reflectance::Preset { id: used.id.clone(), fresnel },
         None => notices.push(format!(

@@ -338,3 +338,28 @@ fn a_finish_is_one_step_and_takes_off_the_one_before_it() {
     assert_eq!(of(history.current()), ["hammered", "clear-lacquer"]);
     assert!(!history.edit("Finish", "a", 3.0, |d| d.assign_finish(99, finish("mirror"), &base[0])));
 }
+
+#[test]
+fn the_tolerances_of_the_scene_count_for_every_material_that_takes_the_cheapest_form() {
+    let Opened { mut document, sources, .. } = workbench();
+    let mut curves = Curves::default();
+    let mut form = |document: &Document| match &resolve(document, &sources, &mut curves).scene.materials[0].reflectance
+    {
+        Reflectance::Preset { fresnel, .. } => fresnel.form(),
+        Reflectance::BaseColor => panic!("no metal"),
+    };
+    document.assign_preset(0, gold(), Assigned::KeepTextures);
+    use crate::surface::fresnel::{RESCALED, SERIES2, SPECTRAL};
+    for own in [None, Some("cheapest")] {
+        document.set_fresnel(0, own);
+        document.lighting.settings.clear();
+        assert_eq!(form(&document), SERIES2, "{own:?}");
+        document.lighting.settings.insert("fresnel-error".into(), 5.into());
+        document.lighting.settings.insert("fresnel-delta-e".into(), 5.into());
+        assert_eq!(form(&document), RESCALED, "{own:?}");
+    }
+    document.set_fresnel(0, Some("spectral"));
+    assert_eq!(form(&document), SPECTRAL);
+    document.set_fresnel(0, Some("shiny"));
+    assert_eq!(form(&document), RESCALED, "an unknown form is that of the scene");
+}

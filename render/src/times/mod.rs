@@ -13,8 +13,8 @@ const THREADS: u32 = 1 << 16;
 const LOOPS: u32 = 128;
 /// Rounds over all curves, of which the median counts.
 const ROUNDS: usize = 7;
-/// `FORM_NONE` of the shader.
-const NONE: u32 = 99;
+/// No curve: what loop and memory cost.
+pub const FORM_NONE: u32 = 99;
 
 /// Seconds that each curve takes for the three channels at one angle, as one of very many.
 ///
@@ -31,7 +31,7 @@ pub fn evaluation_times(gpu: &Gpu, curves: &[Fresnel]) -> Result<Vec<f64>, GpuEr
         usage: wgpu::BufferUsages::STORAGE,
         mapped_at_creation: false,
     });
-    let baseline = Run::new(gpu, &module, &sums, NONE, &[0.0; 15]);
+    let baseline = Run::new(gpu, &module, &sums, FORM_NONE, &[0.0; 15]);
     let runs: Vec<Run> = curves
         .iter()
         .map(|curve| {

@@ -107,6 +107,8 @@ pub fn readme_examples_run() {
     let folder = scratch_folder("readme");
     fs::create_dir_all(folder.join("docs/images")).expect("a writable folder");
     fs::write(folder.join("model.glb"), TRIANGLE).expect("a writable folder");
+    fs::write(folder.join("gold.csv"), "nm,n,k\n400,1.47,1.95\n500,0.97,1.87\n600,0.25,3.07\n700,0.13,4.06\n")
+        .expect("a writable folder");
     let environment = grey_environment(&folder);
     let readme = fs::read_to_string(repository().join("README.md")).expect("the README");
     let examples: Vec<&str> = readme.lines().filter_map(|line| line.strip_prefix("    ./dev run ")).collect();
@@ -114,8 +116,12 @@ pub fn readme_examples_run() {
     for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
         let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
         let is_file =
-            |arg: &str| [".png", ".exr", ".glb", ".hdr", ".html", ".csv"].iter().any(|ending| arg.ends_with(ending));
+            |arg: &str| [".png", ".exr", ".glb", ".hdr", ".html", ".csv", ".json"].iter().any(|end| arg.ends_with(end));
         for arg in args.iter_mut().filter(|arg| is_file(arg)) {
+            *arg = text(&folder.join(&*arg)).into();
+        }
+        // A preset's file with the slot it is for.
+        for arg in args.iter_mut().filter(|arg| arg.contains(".json:")) {
             *arg = text(&folder.join(&*arg)).into();
         }
         for arg in args.iter_mut().filter(|arg| arg.ends_with(".burnish")) {

@@ -2,7 +2,7 @@
 
 use burnish_core::document::Document;
 use burnish_core::lighting::classical;
-use burnish_core::material::preset::{FormChoice, Preset, Tolerance};
+use burnish_core::material::preset::{FormChoice, Preset};
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::surface::dielectric;
 use burnish_core::surface::fresnel::schlick;
@@ -101,8 +101,8 @@ fn caption(document: &Document, index: usize, material: &Material, metal: Option
 /// The form that is rendered; `cheapest` where it is not known which that is.
 fn form_of(document: &Document, index: usize, metal: &Preset) -> &'static str {
     let used = document.materials.get(index).and_then(|entry| entry.preset.as_ref());
-    let own = used.and_then(|used| FormChoice::read(used.fresnel.as_deref()?, Tolerance::default()).ok());
-    match own.unwrap_or_else(|| classical::form_choice(&document.lighting.settings())) {
+    let own = used.and_then(|used| used.fresnel.as_deref());
+    match document.form_choice(own).unwrap_or_else(|_| classical::form_choice(&document.lighting.settings())) {
         FormChoice::Of(form) => form.id(),
         FormChoice::Cheapest(tolerance) => {
             known_fits(metal).map_or(FormChoice::CHEAPEST, |fits| fits.cheapest(tolerance).form.id())

@@ -97,15 +97,20 @@ pub const PARAMS: &[ParamSpec] = &[
     },
 ];
 
-/// The Fresnel form that settings made of [`PARAMS`] choose.
-pub fn form_choice(settings: &Settings) -> FormChoice {
+/// What the cheapest Fresnel form may err by, from settings made of [`PARAMS`].
+pub fn tolerance(settings: &Settings) -> Tolerance {
     let number = |key: &str, otherwise: f64| match settings.get(key) {
         Some(ParamValue::Number(v)) => v,
         _ => otherwise,
     };
     let or = Tolerance::default();
     let relative = 0.01 * number("fresnel-error", 100.0 * or.relative);
-    let tolerance = Tolerance { relative, delta_e: number("fresnel-delta-e", or.delta_e) };
+    Tolerance { relative, delta_e: number("fresnel-delta-e", or.delta_e) }
+}
+
+/// The Fresnel form that settings made of [`PARAMS`] choose.
+pub fn form_choice(settings: &Settings) -> FormChoice {
+    let tolerance = tolerance(settings);
     let text = settings.text("fresnel").unwrap_or_default();
     FormChoice::read(&text, tolerance).unwrap_or(FormChoice::Cheapest(tolerance))
 }

@@ -1,6 +1,7 @@
 //! What a preset must satisfy.
 
 use super::{MAX_ID, Preset, PresetError};
+use crate::surface::fresnel::INDEX_MAX;
 
 /// The `format` of a preset.
 pub const FORMAT: &str = "burnish-metal";
@@ -66,11 +67,12 @@ impl Preset {
             let reason = format!("covers {first} to {last} nm");
             return fault("wavelength_nm", reason, "cover 400 to 700 nm at least, better 380 to 780 nm");
         }
-        if let Some((i, n)) = self.n.iter().enumerate().find(|(_, n)| !(n.is_finite() && **n > 0.0)) {
-            return fault("n", format!("is {n} at entry {i}"), "give finite values above 0");
+        let most = f64::from(INDEX_MAX);
+        if let Some((i, n)) = self.n.iter().enumerate().find(|(_, n)| !(**n > 0.0 && **n <= most)) {
+            return fault("n", format!("is {n} at entry {i}"), "give values above 0, at most 1000");
         }
-        if let Some((i, k)) = self.k.iter().enumerate().find(|(_, k)| !(k.is_finite() && **k >= 0.0)) {
-            return fault("k", format!("is {k} at entry {i}"), "give finite values of 0 or more (the index is n + ik)");
+        if let Some((i, k)) = self.k.iter().enumerate().find(|(_, k)| !(**k >= 0.0 && **k <= most)) {
+            return fault("k", format!("is {k} at entry {i}"), "give values of 0 to 1000 (the index is n + ik)");
         }
         Ok(())
     }

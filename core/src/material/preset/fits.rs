@@ -105,7 +105,7 @@ impl FormChoice {
 pub struct Cheapest {
     /// The form.
     pub form: Form,
-    /// Its errors, and those of the next cheaper that does not do.
+    /// Its errors, and those of the best cheaper form, which does not do.
     pub reason: String,
 }
 
@@ -203,22 +203,22 @@ impl<'a> Fitter<'a> {
         let parameters: BTreeMap<String, [f64; 3]> =
             parameters.into_iter().map(|(name, values)| (name, values.map(|v| rounded(v, 9)))).collect();
         let fresnel = self.fresnel(form, &parameters);
-        let (mut relative, mut absolute, mut delta_e) = (0.0f64, 0.0f64, 0.0f64);
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (i, (truth, lab)) in self.truth.iter().zip(&self.lab).enumerate() {
-            let value = fresnel.eval(node(i) as f32);
-            let error = (value - *truth).abs();
-            absolute = absolute.max(error.max_element().into());
-            relative = relative.max((error / truth.max(Vec3::splat(1e-6))).max_element().into());
-            let difference = ciede2000(lab_from_rgb(value.as_dvec3()), *lab);
-            delta_e = delta_e.max(difference);
-            // Of the disc 2 x dx, where dx goes with the root of x on these nodes.
-            let weight = node(i).powf(1.5);
-            sum += weight * difference;
-            weights += weight;
-        }
+        let errors: Vec<[f64; 3]> = (self.truth.iter().zip(&self.lab).enumerate())
+            .map(|(i, (truth, lab))| {
+                let value = fresnel.eval(node(i) as f32);
+                let error = (value - *truth).abs();
+                let relative = error / truth.max(Vec3::splat(1e-6));
+                let difference = ciede2000(lab_from_rgb(value.as_dvec3()), *lab);
+                [f64::from(relative.max_element()), error.max_element().into(), difference]
+            })
+            .collect();
+        let [relative, absolute, delta_e] = [0, 1, 2].map(|kind| fit::largest(errors.iter().map(|e| e[kind])));
+        // Of the disc 2 x dx, where dx goes with the root of x on these nodes.
+        let weights = (0..NODES).map(|i| node(i).powf(1.5));
+        let delta_e_mean =
+            errors.iter().zip(weights.clone()).map(|(e, w)| w * e[2]).sum::<f64>() / weights.sum::<f64>();
         let [relative, absolute, delta_e, delta_e_mean] =
-            [relative, absolute, delta_e, sum / weights].map(|v| rounded(v, 5));
+            [relative, absolute, delta_e, delta_e_mean].map(|v| rounded(v, 5));
         Fit {
             fit_error: self.fit_error(form, &parameters),
             parameters,
@@ -339,7 +339,7 @@ pub(super) fn curve(form: Form, f0: DVec3, parameters: &BTreeMap<String, [f64; 3
         let value = DVec3::from_array(*parameters.get(name)?).as_vec3();
         value.is_finite().then_some(value)
     };
-    let f0 = f0.as_vec3();
+    let f0 = Some(f0.as_vec3()).filter(|f0| f0.is_finite())?;
     Some(match form {
         Form::Spectral => return None,
         Form::Rescaled => Fresnel::Rescaled { f0: number("f0")?.clamp(Vec3::ZERO, Vec3::ONE) },
@@ -348,7 +348,10 @@ pub(super) fn curve(form: Form, f0: DVec3, parameters: &BTreeMap<String, [f64; 3
         Form::Series2 => Fresnel::Series2 { f0, c: [number("c3")?, number("c8")?] },
         Form::Series3 => Fresnel::Series3 { f0, c: [number("c2")?, number("c6")?, number("c12")?] },
         Form::Series4 => Fresnel::Series4 { f0, c: [number("c2")?, number("c4")?, number("c8")?, number("c16")?] },
-        Form::Fitted | Form::Recipe => Fresnel::Compensated { f0, a: number("a")?, alpha: number("alpha")? },
+        Form::Fitted | Form::Recipe => {
+            let alpha = number("alpha").filter(|alpha| alpha.min_element() > 0.0)?;
+            Fresnel::Compensated { f0, a: number("a")?, alpha }
+        }
         Form::EffectiveNk | Form::SampledNk => Fresnel::Conductor { n: number("n")?, k: number("k")? },
         Form::Gulbrandsen => {
             let (r, g) = (parameters.get("r")?, parameters.get("g")?);

@@ -36,8 +36,19 @@ fn the_stored_fits_of_every_preset_are_those_that_are_made_now() {
         let stored = preset.fits.as_ref().unwrap_or_else(|| panic!("{} has no fits: burnish fit it", preset.id));
         assert!(stored.belong_to(preset), "{} was fitted with another table: burnish fit it", preset.id);
         assert_eq!(stored.cheapest.form, made.cheapest.form, "{}", preset.id);
+        for c in 0..3 {
+            assert!((stored.f0[c] - made.f0[c]).abs() <= 1e-8, "{}", preset.id);
+        }
+        let fitter = Fitter::new(preset);
         for form in Form::ALL {
             let (a, b) = (&stored.forms[&form], &made.forms[&form]);
+            // What is rendered of the stored numbers errs by what is stored, to its five digits.
+            let curve = preset.fresnel(form);
+            let error = |(i, truth): (usize, &Vec3)| {
+                f64::from(((curve.eval(node(i) as f32) - *truth).abs() / truth.max(Vec3::splat(1e-6))).max_element())
+            };
+            let found = fit::largest(fitter.truth.iter().enumerate().map(error));
+            assert!((found - a.relative).abs() <= 1e-6 + 1e-4 * a.relative, "{} {form}: {found} {a:?}", preset.id);
             // Flat optima: the numbers may differ between machines where the error does not.
             assert!((a.relative - b.relative).abs() <= 1e-4 + 0.01 * b.relative, "{} {form}", preset.id);
             assert!((a.delta_e - b.delta_e).abs() <= 0.02, "{} {form}", preset.id);
@@ -110,7 +121,8 @@ fn the_fitted_dip_is_never_worse_than_none_a_valid_recipe_or_another_optimiser()
             assert!(fitted <= least, "{} {c}: {fitted} {least}", preset.id);
             let searched = multi_start(&fitter.targets[c]);
             worst = worst.max(fitted / searched);
-            assert!(fitted <= 1.05 * searched, "{} {c}: {fitted} {searched}", preset.id);
+            // Both stop at their own resolution.
+            assert!(fitted <= 1.002 * searched, "{} {c}: {fitted} {searched}", preset.id);
         }
     }
     println!("largest ratio to the other optimiser: {worst:.4}");

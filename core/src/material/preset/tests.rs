@@ -238,6 +238,8 @@ fn a_faulty_file_is_refused_with_file_field_and_remedy() {
     assert!(refuse(&|p| p.k.truncate(3)).contains("`k` has 3 values for 41 wavelengths"));
     assert!(refuse(&|p| p.wavelength_nm[4] = 410.0).contains("`wavelength_nm` is 410 at entry 4, after 410"));
     assert!(refuse(&|p| p.n[2] = 0.0).contains("`n` is 0 at entry 2"));
+    assert!(refuse(&|p| p.n[2] = 1e200).contains("at entry 2; give values above 0, at most 1000"));
+    assert!(refuse(&|p| p.k[2] = 1e4).contains("`k` is 10000 at entry 2"));
     assert!(refuse(&|p| p.k[2] = -0.5).contains("`k` is -0.5 at entry 2"));
     let short = |p: &mut Preset| {
         p.wavelength_nm.truncate(10);

@@ -16,7 +16,7 @@ pub const INDEX_MAX: f32 = 1e3;
 ///
 /// `eta = n + ik`, `w = sqrt(eta^2 - sin^2)`, `F = (|(x - w)/(x + w)|^2 + |(eta^2 x - w)/(eta^2 x + w)|^2) / 2`,
 /// Born and Wolf 1999, Principles of Optics, section 14.2. 1 at `cos_theta = 0`. Against reference values the error
-/// is below 1e-11.
+/// is below 1e-10, their own digits.
 pub fn exact(n: f64, k: f64, cos_theta: f64) -> f64 {
     let x = cos_theta.clamp(0.0, 1.0);
     let eta2 = (n * n - k * k, 2.0 * n * k);
@@ -27,7 +27,7 @@ pub fn exact(n: f64, k: f64, cos_theta: f64) -> f64 {
 }
 
 /// Slope `dF/dx` of [`exact`] at 90 degrees, `x = cos theta = 0`: `-2 (Re w0 + Re(eta^2 conj w0)) / |w0|^2`,
-/// `w0 = sqrt(eta^2 - 1)`. Infinite for an index of 1.
+/// `w0 = sqrt(eta^2 - 1)`. Not a number for an index of 1.
 pub fn grazing_slope(n: f64, k: f64) -> f64 {
     let eta2 = (n * n - k * k, 2.0 * n * k);
     let w = complex_sqrt(eta2.0 - 1.0, eta2.1);

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use burnish_core::lighting::classical;
-use burnish_core::material::preset::{FormChoice, Preset, Tolerance};
+use burnish_core::material::preset::{FormChoice, Preset};
 use burnish_core::material::{Material, TextureRole};
 use burnish_core::surface::fresnel::Form;
 use eframe::egui;
@@ -46,9 +46,8 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
     });
     form_ui(ui, context, index, &entry.name, used.fresnel.as_deref());
     if let Some(metal) = metal {
-        let settings = document.lighting.settings();
-        let choice = used.fresnel.as_deref().and_then(|id| FormChoice::read(id, Tolerance::default()).ok());
-        errors_ui(ui, metal, choice.unwrap_or_else(|| classical::form_choice(&settings)));
+        let of_scene = || classical::form_choice(&document.lighting.settings());
+        errors_ui(ui, metal, document.form_choice(used.fresnel.as_deref()).unwrap_or_else(|_| of_scene()));
     }
     let texts = context.session.scene().materials.get(index).map(overrides).unwrap_or_default();
     for text in texts {

@@ -26,13 +26,7 @@ pub struct FormSettings {
 impl FormSettings {
     /// Reads the settings of the lighting method.
     pub fn new(settings: &Settings) -> FormSettings {
-        let mut cheapest = settings.clone();
-        let known = cheapest.set("fresnel", FormChoice::CHEAPEST).is_ok();
-        let tolerance = match classical::form_choice(&cheapest) {
-            FormChoice::Cheapest(tolerance) if known => tolerance,
-            _ => Tolerance::default(),
-        };
-        FormSettings { choice: classical::form_choice(settings), tolerance }
+        FormSettings { choice: classical::form_choice(settings), tolerance: classical::tolerance(settings) }
     }
 }
 

@@ -76,6 +76,6 @@ impl Target {
 const LEAST: f64 = 1e-6;
 
 /// The largest, or infinity where one is not a number.
-fn largest(errors: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn largest(errors: impl Iterator<Item = f64>) -> f64 {
     errors.fold(0.0, |most, e| if e.is_nan() { f64::INFINITY } else { most.max(e) })
 }

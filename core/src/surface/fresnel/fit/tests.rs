@@ -76,8 +76,9 @@ fn the_fitted_dip_reaches_the_reference_and_a_search_from_many_starts() {
         let error = fitted(&target).error(&target);
         let searched = multi_start(&target);
         worst = worst.max(error / row("max_rel_error_best_found")).max(error / searched);
-        assert!(error <= 1.05 * row("max_rel_error_best_found"), "{} {}: {error}", row("n"), row("k"));
-        assert!(error <= 1.05 * searched, "{} {}: {error} {searched}", row("n"), row("k"));
+        // The reference looks at other angles.
+        assert!(error <= 1.002 * row("max_rel_error_best_found"), "{} {}: {error}", row("n"), row("k"));
+        assert!(error <= 1.002 * searched, "{} {}: {error} {searched}", row("n"), row("k"));
     }
     println!("largest ratio to the best known: {worst:.4}");
 }

@@ -185,6 +185,7 @@ fn draft_of(columns: Columns, name: &str, stem: &str) -> Draft {
         n: curve(n),
         k: curve(k),
         unit,
+        other: None,
         rows,
         stem: stem.into(),
         source: Source::default(),

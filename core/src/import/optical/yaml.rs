@@ -42,7 +42,7 @@ pub(super) fn read(text: &str, file: &str, stem: &str, log: &mut Log) -> Draft {
     let rows = items.iter().map(Item::rows).sum();
     let (n, k) = curves(items, file, log);
     let unit = Some((Unit::Micrometre, UnitOrigin::Definition));
-    Draft { format: Format::RefractiveIndexInfo, n, k, unit, rows, stem: stem.into(), source, note }
+    Draft { format: Format::RefractiveIndexInfo, n, k, unit, other: None, rows, stem: stem.into(), source, note }
 }
 
 /// One entry of `DATA`.

@@ -27,7 +27,7 @@ fn given_one_file_the_other_is_found_beside_it() {
             is_gold(&imported);
             let report = &imported.report;
             assert_eq!((report.format, report.unit, report.rows), (Format::Pair, Unit::Nanometre, 28));
-            assert_eq!(imported.preset.id, id);
+            assert_eq!((imported.preset.id.as_str(), report.other.as_deref()), (id, Some(other)));
             assert!(texts(&report.notes).contains(&format!("was read from {other}")), "{:?}", report.notes);
         }
     }
@@ -48,7 +48,9 @@ fn files_that_name_their_columns_or_are_in_micrometres_are_pairs_too() {
 fn three_columns_need_no_other_file() {
     let folder = Folder::new();
     std::fs::write(folder.join("Au.eta.spd"), gold(|w, n, k| format!("{w} {n} {k}"))).unwrap();
-    is_gold(&read_in(&folder, "Au.eta.spd").unwrap());
+    let imported = read_in(&folder, "Au.eta.spd").unwrap();
+    is_gold(&imported);
+    assert_eq!(imported.report.other, None);
 }
 
 #[test]

@@ -48,7 +48,7 @@ const MAX_ROWS: usize = 200_000;
 /// Characters in a line.
 const MAX_LINE_CHARS: usize = 10_000;
 
-/// Characters of comments that become the note of a preset.
+/// Characters of comments that become the note of a preset, and of references that become its source.
 const MAX_NOTE_CHARS: usize = 2000;
 
 /// What an import may be told.

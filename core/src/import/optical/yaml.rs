@@ -11,7 +11,7 @@ use super::fields::number;
 use super::formula::Formula;
 use super::report::Log;
 use super::scalar::{Lines, indent_of};
-use super::{Format, MAX_ROWS, Unit, UnitOrigin, citation};
+use super::{Format, MAX_NOTE_CHARS, MAX_ROWS, Unit, UnitOrigin, citation, note_of};
 use crate::import::resolve::quoted;
 
 /// What to do about a layout that is not read.
@@ -38,7 +38,7 @@ pub(super) fn read(text: &str, file: &str, stem: &str, log: &mut Log) -> Draft {
     let mut source = references.map(|text| citation::source(&text)).unwrap_or_default();
     source.table = Some(format!("refractiveindex.info database file {file}"));
     source.licence = text.contains("CC0").then(|| "CC0-1.0".into());
-    let note = comments.map(|text| citation::plain(&text)).filter(|text| !text.is_empty());
+    let note = comments.and_then(|text| note_of(&[citation::plain(&text)]));
     let rows = items.iter().map(Item::rows).sum();
     let (n, k) = curves(items, file, log);
     let unit = Some((Unit::Micrometre, UnitOrigin::Definition));
@@ -99,14 +99,24 @@ impl<'a> Reader<'a> {
                     return self.fault(number, format!("the quote after {key} is not closed"), "close it");
                 };
                 match key {
-                    "REFERENCES" => self.references = Some(text),
-                    "COMMENTS" => self.comments = Some(text),
+                    "REFERENCES" => self.references = Some(self.shortened(number, key, text)),
+                    "COMMENTS" => self.comments = Some(self.shortened(number, key, text)),
                     // Conditions, properties and what later versions add.
                     _ => {}
                 }
                 Some(())
             }
         }
+    }
+
+    /// As much of a text as a preset takes.
+    fn shortened(&mut self, line: usize, key: &str, mut text: String) -> String {
+        if let Some((end, _)) = text.char_indices().nth(MAX_NOTE_CHARS) {
+            text.truncate(end);
+            let note = format!("{key} has more than {MAX_NOTE_CHARS} characters; the rest was left out");
+            self.log.note(self.file, line, note);
+        }
+        text
     }
 
     /// The list under `DATA`.

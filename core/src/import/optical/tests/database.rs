@@ -57,6 +57,24 @@ fn older_files_with_quotes_and_another_indent_are_read() {
 }
 
 #[test]
+fn long_references_and_comments_are_cut_and_said() {
+    let line = format!("    {}\n", "\u{e9}".repeat(1500));
+    let long = line.repeat(1000);
+    let text = table().replace("REFERENCES: |\n", &format!("REFERENCES: |\n{long}"));
+    let text = text.replace("COMMENTS: |\n", &format!("COMMENTS: |\n{long}"));
+    let imported = parse(&text, "Johnson.yml", &Options::default()).unwrap();
+    is_gold(&imported);
+    let Imported { preset, report } = imported;
+    for text in [preset.note.as_deref(), preset.source.other["reference"].as_str()] {
+        assert_eq!(text.map(|text| text.chars().count()), Some(MAX_NOTE_CHARS));
+    }
+    let notes = texts(&report.notes);
+    for words in ["line 4: REFERENCES has more than 2000 characters", "line 1008: COMMENTS has more than 2000"] {
+        assert!(notes.contains(words), "`{words}` is missing in: {notes}");
+    }
+}
+
+#[test]
 fn n_and_k_in_two_tables_are_put_on_one_grid() {
     let imported = database(
         "  - type: tabulated n\n    data: |\n        0.40 1.0\n        0.50 2.0\n        0.80 5.0\n  - type: tabulated k\n    \

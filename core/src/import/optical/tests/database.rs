@@ -124,6 +124,9 @@ fn a_file_that_is_not_laid_out_so_is_refused_by_line() {
     refused("", &["gives no n"]);
     refused("  - type: tabulated k\n    data: |\n        0.4 1\n        0.7 1\n", &["gives no n"]);
     refused(&nk.repeat(2), &["line 15: gives n a second time", "line 15: gives k a second time"]);
+    refused(&nk.repeat(17), &["line 75: DATA has more than 16 entries; keep one of n and one of k"]);
+    let keys: String = (0..31).map(|i| format!("    key{i}: x\n")).collect();
+    refused(&(nk.to_string() + &keys), &["line 45: the entry has more than 32 keys"]);
     refused(&nk.replace("0.7 1 2", "0.7 1"), &["line 14: has 2 numbers; `tabulated nk` has 3 in a row"]);
     refused(&nk.replace("0.7 1 2", "0.7 1 2 3"), &["line 14: has 4 numbers"]);
     refused(&nk.replace("0.7 1 2", "0.7 1,0 2"), &["line 14: '1,0' is not a number"]);

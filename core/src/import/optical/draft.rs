@@ -20,7 +20,7 @@ const MAX_POINTS: usize = 50_000;
 const WIDE_GAP_NM: f64 = 100.0;
 
 /// What to do when the unit is not known.
-const SAY_THE_UNIT: &str = "say the unit: --unit nm|um|eV";
+const SAY_THE_UNIT: &str = "say the unit: --unit nm|um|A|eV";
 
 const NOT_A_METAL: &str = "k is 0 everywhere: a dielectric, not a metal";
 

@@ -68,6 +68,8 @@ fn a_missing_or_faulty_other_file_is_named() {
     refused("Ag.spd", &["Ag.spd: cannot be read"]);
     std::fs::write(folder.join("Au.k.spd"), k.replace("548.6 2.455", "548.6 x")).unwrap();
     refused("Au.eta.spd", &["Au.k.spd: line 9: column 2: 'x' is not a number"]);
+    std::fs::write(folder.join("Au.k.spd"), k.replace("548.6", &" ".repeat(MAX_LINE_CHARS))).unwrap();
+    refused("Au.eta.spd", &["Au.k.spd: line 9: has more than 10000 characters"]);
     std::fs::write(folder.join("Au.k.spd"), k.replace(" 2.455", " -2.455")).unwrap();
     refused("Au.eta.spd", &["Au.k.spd: line 9: k is -2.455"]);
     std::fs::write(folder.join("Au.k.spd"), gold(|w, n, k| format!("{w} {n} {k}"))).unwrap();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use burnish_core::color::gamut::clip;
 use burnish_core::import::optical::{self, Finding, ImportReport, Options, Unit};
-use burnish_core::material::preset::{self, Cheapest, Fit, Fits, Preset, Tolerance};
+use burnish_core::material::preset::{self, Cheapest, Fit, Fits, Preset, PresetError, Tolerance};
 use burnish_core::surface::fresnel::Form;
 use glam::DVec3;
 use serde::Serialize;
@@ -118,7 +118,10 @@ impl Fitted {
         };
         if let Some(target) = target {
             preset.fits = Some(fits);
-            preset.write(target).map_err(|error| Failure::input(target, error))?;
+            preset.write(target).map_err(|error| match error {
+                PresetError::File(error) => Failure::resources(error),
+                error => Failure::input(target, error),
+            })?;
         }
         Ok(fitted)
     }

@@ -195,7 +195,7 @@ fn set_finishes(
 /// A preset's file may be at fault, or the name that was given.
 pub(super) fn metal_failure(preset: &str, error: PresetError) -> Failure {
     match error {
-        PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } => {
+        PresetError::File(_) | PresetError::Json { .. } | PresetError::Field { .. } | PresetError::TooLarge { .. } => {
             Failure::input(Path::new(preset), error)
         }
         PresetError::Unknown { .. } => Failure::usage(format!("--metal {preset}: {error}")),

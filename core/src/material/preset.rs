@@ -39,7 +39,7 @@ pub fn numbered_id(id: &str, taken: impl Fn(&str) -> bool) -> String {
     ids.find(|candidate| !taken(candidate)).unwrap_or_default()
 }
 
-/// Largest preset file that is read.
+/// Largest preset file that is read and written.
 const MAX_BYTES: u64 = 4 << 20;
 
 /// Measured optical constants of a metal, with where they come from. Fields that this version does not know are kept.
@@ -135,6 +135,18 @@ pub enum PresetError {
         reason: String,
         /// What to do.
         remedy: &'static str,
+    },
+    /// Its file would be larger than one that is read.
+    #[error(
+        "{}: would have {bytes} bytes, over the limit of {}; shorten its texts or thin its table out",
+        path.display(),
+        MAX_BYTES
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
     },
     /// No preset of that name.
     #[error("no preset `{wanted}`; {hint}, or name a .json file")]

@@ -6,7 +6,7 @@ use std::path::Path;
 use burnish_tests::{repository, scratch_folder};
 use serde_json::Value;
 
-use crate::{INPUT, USAGE, burnish, text};
+use crate::{INPUT, RESOURCES, USAGE, burnish, text};
 
 /// Gold, rows of P. B. Johnson and R. W. Christy, Phys. Rev. B 6, 4370 (1972): um, n, k.
 const GOLD: &str = "0.3679 1.48 1.895\n0.3974 1.47 1.952\n0.4133 1.46 1.958\n0.4305 1.45 1.948\n0.4509 1.38 1.914\n\
@@ -133,5 +133,16 @@ pub fn another_preset_is_not_written_over() {
     named("mine", &other).failed(INPUT, &["notes.txt", "is no preset and is not written over"]);
     assert_eq!(fs::read_to_string(&other).expect("kept"), "keep me");
     assert!(named("Au", &folder.join("y.json")).succeeded().out.contains("`Au` is the id of a metal that comes"));
-    named("mine", &folder.join("none/x.json")).failed(INPUT, &["x.json", "create the folder"]);
+}
+
+pub fn a_preset_that_cannot_be_written_is_no_fault_of_the_table() {
+    let folder = scratch_folder("unwritable");
+    let (table, target) = (folder.join("Au.csv"), folder.join("none/x.json"));
+    let fit = || burnish(&["fit", text(&table), "--id", "mine", "--out", text(&target)]);
+    write(&table, GOLD);
+    fit().failed(RESOURCES, &["x.json", "create the folder"]);
+    assert!(!folder.join("none").exists());
+    // The table is looked at first.
+    write(&table, "400 1\n");
+    fit().failed(INPUT, &["Au.csv"]);
 }

@@ -57,6 +57,11 @@ fn free_of_the_gpu() -> Vec<Trial> {
         ),
         trial("tables that make no sense are refused by line", &[], fitting::tables_that_make_no_sense_are_refused),
         trial("another preset is not written over", &[], fitting::another_preset_is_not_written_over),
+        trial(
+            "a preset that cannot be written is exit code 4",
+            &[],
+            fitting::a_preset_that_cannot_be_written_is_no_fault_of_the_table,
+        ),
     ]
 }
 

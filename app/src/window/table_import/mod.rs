@@ -9,10 +9,10 @@ mod tests;
 mod view;
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use burnish_core::import::optical::{self, Format, Imported, OpticalError, OpticalFault, Options};
+use burnish_core::import::optical::{self, Imported, OpticalError, OpticalFault, Options};
 use burnish_core::job::{Job, Outcome};
 use burnish_core::material::preset::Preset;
 use eframe::egui;
@@ -88,9 +88,10 @@ impl TableImport {
         }
         let Some(preview) = &mut self.preview else { return };
         preview.advance();
-        let read_pair = matches!(&preview.found, Some(Ok(found)) if found.report.format == Format::Pair);
-        if let (true, Origin::File(path)) = (read_pair, &preview.origin) {
-            self.waiting.retain(|other| !matches!(other, Origin::File(other) if are_halves(path, other)));
+        if let Some(Ok(found)) = &preview.found
+            && let Some(half) = other_half(&preview.origin, found)
+        {
+            self.waiting.retain(|waiting| *waiting != half);
         }
         let assign = match preview.ui(ctx, self.waiting.len(), context) {
             Answer::None => return,
@@ -180,13 +181,10 @@ fn unread(origin: &Origin) -> OpticalError {
     OpticalError { faults: vec![fault], omitted: 0 }
 }
 
-/// True for names such as `Au.eta.spd` and `Au.k.spd` in one folder: what stands before the last word is the same.
-fn are_halves(a: &Path, b: &Path) -> bool {
-    let stem = |path: &Path| {
-        let stem = path.file_stem()?.to_string_lossy().into_owned();
-        Some(stem.rfind(['.', '-', '_', ' ']).map_or(String::new(), |at| stem[..at].to_string()))
-    };
-    a.parent() == b.parent() && a.extension() == b.extension() && stem(a) == stem(b)
+/// The file that was read with that of `origin`: it need not be looked at again.
+fn other_half(origin: &Origin, found: &Imported) -> Option<Origin> {
+    let Origin::File(path) = origin else { return None };
+    found.report.other.as_ref().map(|other| Origin::File(path.with_file_name(other)))
 }
 
 /// True for a text that is worth a preview: rows of numbers, a database file of refractiveindex.info, a preset of ours.

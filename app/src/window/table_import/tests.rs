@@ -17,11 +17,18 @@ fn rows_of_numbers_are_a_table_and_prose_is_none() {
 }
 
 #[test]
-fn two_halves_of_a_table_are_one() {
-    let halves = |a: &str, b: &str| are_halves(Path::new(a), Path::new(b));
-    assert!(halves("/m/Au.eta.spd", "/m/Au.k.spd") && halves("/m/metal-Au-n.txt", "/m/metal-Au-k.txt"));
-    assert!(!halves("/m/Au.eta.spd", "/m/Ag.k.spd") && !halves("/m/Au.eta.spd", "/o/Au.k.spd"));
-    assert!(!halves("/m/Au.eta.spd", "/m/Au.k.txt"));
+fn the_other_half_of_a_table_is_one_file_and_no_other() {
+    let text = "wavelength_nm,n,k\n380,1.4,1.9\n550,0.9,1.8\n780,0.1,4.0\n";
+    let mut found = optical::parse(text, "eta.spd", &Options::default()).unwrap();
+    let origin = Origin::File("/m/eta.spd".into());
+    assert_eq!(other_half(&origin, &found), None);
+    found.report.other = Some("k.spd".into());
+    let half = other_half(&origin, &found).unwrap();
+    assert_eq!(half, Origin::File("/m/k.spd".into()));
+    for stays in ["/m/Ag.spd", "/m/iron.spd", "/m/n.spd", "/o/k.spd", "/m/k.txt"] {
+        assert_ne!(half, Origin::File(stays.into()), "{stays}");
+    }
+    assert_eq!(other_half(&Origin::Text(text.into()), &found), None);
 }
 
 #[test]

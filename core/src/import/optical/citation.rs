@@ -125,20 +125,20 @@ pub(super) fn plain(text: &str) -> String {
     while let Some(open) = rest.find('<') {
         let (before, tag) = rest.split_at(open);
         bare.push_str(before);
+        rest = tag;
         let named = tag.get(1..).is_some_and(|t| t.starts_with(|c: char| c.is_ascii_alphabetic() || c == '/'));
-        match tag.find('>').filter(|_| named) {
-            Some(close) => {
-                // A new line divides words, a subscript does not.
-                if tag.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("<br")) {
-                    bare.push(' ');
-                }
-                rest = tag.get(close + 1..).unwrap_or_default();
-            }
-            None => {
-                bare.push('<');
-                rest = tag.get(1..).unwrap_or_default();
-            }
+        if !named {
+            bare.push('<');
+            rest = tag.get(1..).unwrap_or_default();
+            continue;
         }
+        // Where this tag has no end, none behind it has one.
+        let Some(close) = tag.find('>') else { break };
+        // A new line divides words, a subscript does not.
+        if tag.get(..3).is_some_and(|t| t.eq_ignore_ascii_case("<br")) {
+            bare.push(' ');
+        }
+        rest = tag.get(close + 1..).unwrap_or_default();
     }
     bare.push_str(rest);
     for (entity, character) in
@@ -206,5 +206,9 @@ mod tests {
     #[test]
     fn tags_go_and_comparisons_stay() {
         assert_eq!(plain("Al<sub>2</sub>O<sub>3</sub>,<br>k < 1 and n > 2"), "Al2O3, k < 1 and n > 2");
+        assert_eq!(plain("<i>a</i> <b c <d e"), "a <b c <d e");
+        // In a time that grows with the length, not with its square.
+        let open = "<a".repeat(1 << 20);
+        assert_eq!(plain(&open), open);
     }
 }

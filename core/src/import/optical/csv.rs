@@ -8,7 +8,7 @@ use super::curve::Sample;
 use super::fields::{Decimal, Separator, begins_as_number, number};
 use super::header::{self, Column, Role};
 use super::report::Log;
-use super::{MAX_LINE_CHARS, MAX_ROWS, Unit, UnitOrigin};
+use super::{MAX_ROWS, Unit, UnitOrigin};
 use crate::import::resolve::quoted;
 
 /// Comment lines that are kept.
@@ -85,11 +85,6 @@ impl Reader<'_> {
     /// Takes one line; `None` when going on makes no sense.
     fn line(&mut self, number: usize, line: &str) -> Option<()> {
         let line = line.trim();
-        if line.chars().nth(MAX_LINE_CHARS).is_some() {
-            let reason = format!("has more than {MAX_LINE_CHARS} characters");
-            self.fault(number, reason, "is this a table? put each row on a line of its own");
-            return None;
-        }
         if line.is_empty() {
             return Some(());
         }

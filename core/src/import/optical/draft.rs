@@ -20,7 +20,7 @@ const MAX_POINTS: usize = 50_000;
 const WIDE_GAP_NM: f64 = 100.0;
 
 /// What to do when the unit is not known.
-const SAY_THE_UNIT: &str = "say the unit: --unit nm|um|eV";
+const SAY_THE_UNIT: &str = "say the unit: --unit nm|um|A|eV";
 
 const NOT_A_METAL: &str = "k is 0 everywhere: a dielectric, not a metal";
 
@@ -33,6 +33,8 @@ pub(super) struct Draft {
     pub k: Curve,
     /// What the file says about the unit.
     pub unit: Option<(Unit, UnitOrigin)>,
+    /// Name of the second file, of a pair.
+    pub other: Option<String>,
     /// Rows of numbers.
     pub rows: usize,
     /// Name without ending; the id is made from it.
@@ -56,6 +58,7 @@ impl Draft {
             format: self.format,
             unit,
             unit_origin,
+            other: self.other.take(),
             rows: self.rows,
             range_nm,
             points: table.nm.len(),
@@ -238,6 +241,7 @@ pub(super) fn report_of(preset: &Preset, file: &str, mut log: Log) -> ImportRepo
         format: Format::Preset,
         unit: Unit::Nanometre,
         unit_origin: UnitOrigin::Definition,
+        other: None,
         rows: nm.len(),
         range_nm: (nm.first().copied().unwrap_or(0.0), nm.last().copied().unwrap_or(0.0)),
         points: nm.len(),

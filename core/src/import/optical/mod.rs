@@ -9,7 +9,7 @@
 //! says what was guessed. Nothing is corrected silently: a table that could mean two things is refused with every
 //! faulty line (up to ten) and the remedy.
 //!
-//! Limits: 16 MB a file, 200 000 rows (50 000 from 300 to 1000 nm), 10 000 characters a line.
+//! Limits: 16 MB a file, 200 000 rows (50 000 from 300 to 1000 nm), 10 000 characters a line but for presets.
 
 mod citation;
 mod csv;
@@ -48,7 +48,7 @@ const MAX_ROWS: usize = 200_000;
 /// Characters in a line.
 const MAX_LINE_CHARS: usize = 10_000;
 
-/// Characters of comments that become the note of a preset.
+/// Characters of comments that become the note of a preset, and of references that become its source.
 const MAX_NOTE_CHARS: usize = 2000;
 
 /// What an import may be told.
@@ -99,7 +99,9 @@ pub fn parse(text: &str, name: &str, options: &Options) -> Result<Imported, Opti
         );
         return Err(log.into_error());
     }
-    let draft = match content(text.trim_start_matches('\u{feff}'), name, &mut log) {
+    let text = text.trim_start_matches('\u{feff}');
+    check_lines(text, name)?;
+    let draft = match content(text, name, &mut log) {
         Content::Preset(preset) => return finish_preset(*preset, name, options, log),
         Content::Draft(draft) => Some(*draft),
         Content::Half(half) => {
@@ -127,7 +129,9 @@ fn load(path: &Path, name: &str, log: &mut Log) -> Result<String, OpticalError> 
             if !utf8 {
                 log.note(name, None, "is not UTF-8 and was read as Latin-1");
             }
-            Ok(text.trim_start_matches('\u{feff}').to_string())
+            let text = text.trim_start_matches('\u{feff}');
+            check_lines(text, name)?;
+            Ok(text.to_string())
         }
         Err(found) => {
             let mut log = Log::default();
@@ -135,6 +139,22 @@ fn load(path: &Path, name: &str, log: &mut Log) -> Result<String, OpticalError> 
             Err(log.into_error())
         }
     }
+}
+
+/// Refuses lines that no table has. JSON may be written in one line.
+fn check_lines(text: &str, name: &str) -> Result<(), OpticalError> {
+    // A character has a byte at least.
+    let too_long = |line: &str| line.len() > MAX_LINE_CHARS && line.chars().nth(MAX_LINE_CHARS).is_some();
+    let Some(index) = text.lines().position(too_long).filter(|_| !is_json(text)) else { return Ok(()) };
+    let mut log = Log::default();
+    let remedy = "is this a table? put each row on a line of its own, and break long texts";
+    log.fault(name, index + 1, format!("has more than {MAX_LINE_CHARS} characters"), remedy);
+    Err(log.into_error())
+}
+
+/// True for what can only be a preset.
+fn is_json(text: &str) -> bool {
+    text.trim_start().starts_with('{')
 }
 
 /// Bytes as text, and whether they were UTF-8; or what they are.
@@ -159,7 +179,7 @@ fn decode(bytes: &[u8]) -> Result<(Cow<'_, str>, bool), &'static str> {
 fn content(text: &str, name: &str, log: &mut Log) -> Content {
     let draft = |draft| Content::Draft(Box::new(draft));
     let stem = Path::new(name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    if text.trim_start().starts_with('{') {
+    if is_json(text) {
         match serde_json::from_str(text) {
             Ok(preset) => return Content::Preset(Box::new(preset)),
             Err(error) => log.fault(name, None, error.to_string(), "write it as presets/README.md shows"),
@@ -185,6 +205,7 @@ fn draft_of(columns: Columns, name: &str, stem: &str) -> Draft {
         n: curve(n),
         k: curve(k),
         unit,
+        other: None,
         rows,
         stem: stem.into(),
         source: Source::default(),

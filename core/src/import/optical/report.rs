@@ -56,6 +56,8 @@ pub struct ImportReport {
     pub unit: Unit,
     /// How the unit is known.
     pub unit_origin: UnitOrigin,
+    /// Name of the file beside the named one that held the other quantity, of a pair.
+    pub other: Option<String>,
     /// Rows of numbers that were read.
     pub rows: usize,
     /// Shortest and longest wavelength at which both n and k are known, nm, before trimming.

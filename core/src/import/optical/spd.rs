@@ -147,6 +147,7 @@ pub(super) fn paired(mut first: Half, mut second: Half, stem: &str, log: &mut Lo
         n,
         k,
         unit: first.columns.unit.or(second.columns.unit),
+        other: Some(second.file),
         rows: first.columns.rows + second.columns.rows,
         stem: stem.into(),
         source: Default::default(),

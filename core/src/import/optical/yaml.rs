@@ -11,11 +11,17 @@ use super::fields::number;
 use super::formula::Formula;
 use super::report::Log;
 use super::scalar::{Lines, indent_of};
-use super::{Format, MAX_ROWS, Unit, UnitOrigin, citation};
+use super::{Format, MAX_NOTE_CHARS, MAX_ROWS, Unit, UnitOrigin, citation, note_of};
 use crate::import::resolve::quoted;
 
 /// What to do about a layout that is not read.
 const LAYOUT: &str = "write it as the files of the refractiveindex.info database are";
+
+/// Entries of `DATA`; two, of n and of k, are all that make sense.
+const MAX_ENTRIES: usize = 16;
+
+/// Keys of an entry; the database uses a few.
+const MAX_KEYS: usize = 32;
 
 /// True for text that has the key `DATA` at the margin.
 pub(super) fn is_database_file(text: &str) -> bool {
@@ -24,7 +30,7 @@ pub(super) fn is_database_file(text: &str) -> bool {
 
 /// Reads a text; what is wrong with it goes to the log.
 pub(super) fn read(text: &str, file: &str, stem: &str, log: &mut Log) -> Draft {
-    let mut reader = Reader { file, log, items: Vec::new(), references: None, comments: None, seen: false };
+    let mut reader = Reader { file, log, items: Vec::new(), rows: 0, references: None, comments: None, seen: false };
     let mut lines = Lines::new(text);
     while let Some((number, line)) = lines.take() {
         if reader.top(number, line, &mut lines).is_none() {
@@ -38,11 +44,11 @@ pub(super) fn read(text: &str, file: &str, stem: &str, log: &mut Log) -> Draft {
     let mut source = references.map(|text| citation::source(&text)).unwrap_or_default();
     source.table = Some(format!("refractiveindex.info database file {file}"));
     source.licence = text.contains("CC0").then(|| "CC0-1.0".into());
-    let note = comments.map(|text| citation::plain(&text)).filter(|text| !text.is_empty());
+    let note = comments.and_then(|text| note_of(&[citation::plain(&text)]));
     let rows = items.iter().map(Item::rows).sum();
     let (n, k) = curves(items, file, log);
     let unit = Some((Unit::Micrometre, UnitOrigin::Definition));
-    Draft { format: Format::RefractiveIndexInfo, n, k, unit, rows, stem: stem.into(), source, note }
+    Draft { format: Format::RefractiveIndexInfo, n, k, unit, other: None, rows, stem: stem.into(), source, note }
 }
 
 /// One entry of `DATA`.
@@ -68,6 +74,8 @@ struct Reader<'a> {
     file: &'a str,
     log: &'a mut Log,
     items: Vec<Item>,
+    /// Rows of all tables so far.
+    rows: usize,
     references: Option<String>,
     comments: Option<String>,
     seen: bool,
@@ -99,14 +107,24 @@ impl<'a> Reader<'a> {
                     return self.fault(number, format!("the quote after {key} is not closed"), "close it");
                 };
                 match key {
-                    "REFERENCES" => self.references = Some(text),
-                    "COMMENTS" => self.comments = Some(text),
+                    "REFERENCES" => self.references = Some(self.shortened(number, key, text)),
+                    "COMMENTS" => self.comments = Some(self.shortened(number, key, text)),
                     // Conditions, properties and what later versions add.
                     _ => {}
                 }
                 Some(())
             }
         }
+    }
+
+    /// As much of a text as a preset takes.
+    fn shortened(&mut self, line: usize, key: &str, mut text: String) -> String {
+        if let Some((end, _)) = text.char_indices().nth(MAX_NOTE_CHARS) {
+            text.truncate(end);
+            let note = format!("{key} has more than {MAX_NOTE_CHARS} characters; the rest was left out");
+            self.log.note(self.file, line, note);
+        }
+        text
     }
 
     /// The list under `DATA`.
@@ -122,6 +140,10 @@ impl<'a> Reader<'a> {
             lines.take();
             let entry = match dash {
                 Some(entry) if *list_indent.get_or_insert(indent) == indent => {
+                    if self.items.len() == MAX_ENTRIES {
+                        let reason = format!("DATA has more than {MAX_ENTRIES} entries");
+                        return self.fault(number, reason, "keep one of n and one of k");
+                    }
                     let blanks = entry.len() - entry.trim_start().len();
                     key_indent = indent + 2 + blanks;
                     self.items.push(Item { line: number, ..Item::default() });
@@ -143,6 +165,9 @@ impl<'a> Reader<'a> {
         let keys = &mut self.items.last_mut()?.keys;
         if keys.iter().any(|known| known == key) {
             return self.fault(number, format!("`{key}` stands there twice"), "keep one of the two");
+        }
+        if keys.len() == MAX_KEYS {
+            return self.fault(number, format!("the entry has more than {MAX_KEYS} keys"), LAYOUT);
         }
         keys.push(key.into());
         if key == "data" {
@@ -190,8 +215,8 @@ impl<'a> Reader<'a> {
 
     /// The lines of a table.
     fn rows(&mut self, block: Vec<(usize, &str)>) -> Option<()> {
-        let before: usize = self.items.iter().map(|item| item.rows.len()).sum();
-        if before + block.len() > MAX_ROWS {
+        self.rows += block.len();
+        if self.rows > MAX_ROWS {
             let line = block.first().map_or(0, |(line, _)| *line);
             return self.fault(line, format!("there are more than {MAX_ROWS} rows"), "thin the table out");
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{Preset, PresetError};
+use super::{MAX_BYTES, Preset, PresetError};
 use crate::file::write_atomic;
 
 /// Numbers in a line of a long list.
@@ -20,10 +20,15 @@ impl Preset {
         Ok(text)
     }
 
-    /// Checks the preset and writes its file as a whole or not at all.
+    /// Checks the preset and writes its file as a whole or not at all. What could not be read again is not written.
     pub fn write(&self, path: &Path) -> Result<(), PresetError> {
         self.check(&path.display().to_string())?;
-        Ok(write_atomic(path, self.to_text()?.as_bytes())?)
+        let text = self.to_text()?;
+        let bytes = text.len() as u64;
+        if bytes > MAX_BYTES {
+            return Err(PresetError::TooLarge { path: path.into(), bytes });
+        }
+        Ok(write_atomic(path, text.as_bytes())?)
     }
 }
 
@@ -106,5 +111,21 @@ mod tests {
         let bad = Preset { n: Vec::new(), ..find("Fe").unwrap() };
         assert!(bad.write(&path).unwrap_err().to_string().contains("field `n`"));
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_preset_too_large_to_be_read_again_is_not_written() {
+        let folder = Folder::new();
+        let path = folder.join("mine.json");
+        let note = |length: usize| Preset { note: Some("x".repeat(length)), ..find("Fe").unwrap() };
+        let rest = note(0).to_text().unwrap().len();
+        let fitting = MAX_BYTES as usize - rest;
+        let error = note(fitting + 1).write(&path).unwrap_err().to_string();
+        for words in ["mine.json: would have 4194305 bytes", "limit of 4194304", "shorten its texts"] {
+            assert!(error.contains(words), "`{words}` is missing in: {error}");
+        }
+        assert!(!path.exists());
+        note(fitting).write(&path).unwrap();
+        assert!(Preset::read(&path).is_ok());
     }
 }

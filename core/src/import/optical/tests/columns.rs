@@ -95,7 +95,7 @@ fn an_export_reaches_from_x_rays_to_the_far_infrared() {
     assert_eq!(imported.report.range_nm, (1.0, 200_000.0));
     assert!(texts(&imported.report.notes).contains("2 entries outside of 10 to 2000 nm"));
     let error = plain(&rows.replace("\t1.5", "\t1.5\t2")).unwrap_err().to_string();
-    assert!(error.contains("names no unit") && error.contains("--unit nm|um|eV"), "{error}");
+    assert!(error.contains("names no unit") && error.contains("--unit nm|um|A|eV"), "{error}");
 }
 
 #[test]

@@ -57,6 +57,24 @@ fn older_files_with_quotes_and_another_indent_are_read() {
 }
 
 #[test]
+fn long_references_and_comments_are_cut_and_said() {
+    let line = format!("    {}\n", "\u{e9}".repeat(1500));
+    let long = line.repeat(1000);
+    let text = table().replace("REFERENCES: |\n", &format!("REFERENCES: |\n{long}"));
+    let text = text.replace("COMMENTS: |\n", &format!("COMMENTS: |\n{long}"));
+    let imported = parse(&text, "Johnson.yml", &Options::default()).unwrap();
+    is_gold(&imported);
+    let Imported { preset, report } = imported;
+    for text in [preset.note.as_deref(), preset.source.other["reference"].as_str()] {
+        assert_eq!(text.map(|text| text.chars().count()), Some(MAX_NOTE_CHARS));
+    }
+    let notes = texts(&report.notes);
+    for words in ["line 4: REFERENCES has more than 2000 characters", "line 1008: COMMENTS has more than 2000"] {
+        assert!(notes.contains(words), "`{words}` is missing in: {notes}");
+    }
+}
+
+#[test]
 fn n_and_k_in_two_tables_are_put_on_one_grid() {
     let imported = database(
         "  - type: tabulated n\n    data: |\n        0.40 1.0\n        0.50 2.0\n        0.80 5.0\n  - type: tabulated k\n    \
@@ -106,6 +124,9 @@ fn a_file_that_is_not_laid_out_so_is_refused_by_line() {
     refused("", &["gives no n"]);
     refused("  - type: tabulated k\n    data: |\n        0.4 1\n        0.7 1\n", &["gives no n"]);
     refused(&nk.repeat(2), &["line 15: gives n a second time", "line 15: gives k a second time"]);
+    refused(&nk.repeat(17), &["line 75: DATA has more than 16 entries; keep one of n and one of k"]);
+    let keys: String = (0..31).map(|i| format!("    key{i}: x\n")).collect();
+    refused(&(nk.to_string() + &keys), &["line 45: the entry has more than 32 keys"]);
     refused(&nk.replace("0.7 1 2", "0.7 1"), &["line 14: has 2 numbers; `tabulated nk` has 3 in a row"]);
     refused(&nk.replace("0.7 1 2", "0.7 1 2 3"), &["line 14: has 4 numbers"]);
     refused(&nk.replace("0.7 1 2", "0.7 1,0 2"), &["line 14: '1,0' is not a number"]);

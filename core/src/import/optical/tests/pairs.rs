@@ -27,7 +27,7 @@ fn given_one_file_the_other_is_found_beside_it() {
             is_gold(&imported);
             let report = &imported.report;
             assert_eq!((report.format, report.unit, report.rows), (Format::Pair, Unit::Nanometre, 28));
-            assert_eq!(imported.preset.id, id);
+            assert_eq!((imported.preset.id.as_str(), report.other.as_deref()), (id, Some(other)));
             assert!(texts(&report.notes).contains(&format!("was read from {other}")), "{:?}", report.notes);
         }
     }
@@ -48,7 +48,9 @@ fn files_that_name_their_columns_or_are_in_micrometres_are_pairs_too() {
 fn three_columns_need_no_other_file() {
     let folder = Folder::new();
     std::fs::write(folder.join("Au.eta.spd"), gold(|w, n, k| format!("{w} {n} {k}"))).unwrap();
-    is_gold(&read_in(&folder, "Au.eta.spd").unwrap());
+    let imported = read_in(&folder, "Au.eta.spd").unwrap();
+    is_gold(&imported);
+    assert_eq!(imported.report.other, None);
 }
 
 #[test]
@@ -66,6 +68,8 @@ fn a_missing_or_faulty_other_file_is_named() {
     refused("Ag.spd", &["Ag.spd: cannot be read"]);
     std::fs::write(folder.join("Au.k.spd"), k.replace("548.6 2.455", "548.6 x")).unwrap();
     refused("Au.eta.spd", &["Au.k.spd: line 9: column 2: 'x' is not a number"]);
+    std::fs::write(folder.join("Au.k.spd"), k.replace("548.6", &" ".repeat(MAX_LINE_CHARS))).unwrap();
+    refused("Au.eta.spd", &["Au.k.spd: line 9: has more than 10000 characters"]);
     std::fs::write(folder.join("Au.k.spd"), k.replace(" 2.455", " -2.455")).unwrap();
     refused("Au.eta.spd", &["Au.k.spd: line 9: k is -2.455"]);
     std::fs::write(folder.join("Au.k.spd"), gold(|w, n, k| format!("{w} {n} {k}"))).unwrap();

@@ -53,7 +53,7 @@ fn a_range_that_does_not_fit_is_refused_with_the_unit_that_would_fit() {
     refused("wl_um n k\n380 1 2\n500 1 2\n780 1 2\n", &["if the unit is wrong, say --unit nm"]);
     refused("300 1 2\n550 1 2\n800 1 2\n", &["has 1 point from 380 to 780 nm"]);
     refused("500 1 2\n", &["holds n and k at 1 wavelength"]);
-    refused("20 1 2\n500 1 2\n780 1 2\n", &["names no unit", "20 to 780", "--unit nm|um|eV"]);
+    refused("20 1 2\n500 1 2\n780 1 2\n", &["names no unit", "20 to 780", "--unit nm|um|A|eV"]);
     refused("wl,n\n0.3,1\n0.4,1\nwl,k\n0.5,1\n0.8,1\n", &["no wavelength in common"]);
 }
 
@@ -98,6 +98,8 @@ fn all_faults_are_told_together_up_to_ten() {
 #[test]
 fn limits_are_named() {
     refused(&format!("400 1 {}\n", "2".repeat(MAX_LINE_CHARS)), &["line 1: has more than 10000 characters"]);
+    let text = format!("REFERENCES: |\n    {}\nDATA:\n", "\u{e9}".repeat(MAX_LINE_CHARS));
+    refused(&text, &["line 2: has more than 10000 characters", "break long texts"]);
     let rows: String = (0..=MAX_ROWS).map(|i| format!("{i} 1 2\n")).collect();
     refused(&rows, &["more than 200000 rows", "thin the table out"]);
     let fine: String = (0..50_010).map(|i| format!("{} 1 2\n", 350.0 + 0.01 * f64::from(i))).collect();

@@ -145,5 +145,9 @@ fn write_forms(study: &Study, out: &mut dyn Write) -> Result<(), Failure> {
     for s in study.summaries() {
         writeln!(out, "{:12}  {:6.1}  {:5.2}  {:6}  {:6}", s.form.id(), s.nanoseconds, s.ratio, s.within, s.chosen)?;
     }
+    writeln!(
+        out,
+        "\nCheap is what comes first here. The table of `spectral` comes last: two reads of memory, but 768 numbers."
+    )?;
     Ok(())
 }

@@ -214,6 +214,7 @@ mod tests {
 
     #[test]
     fn the_caption_names_the_form_that_the_cheapest_is() {
+        use burnish_core::material::preset::Tolerance;
         let mut document = burnish_core::document::open("gallery:workbench").unwrap().document;
         let gold = preset::find("Au").unwrap();
         document.assign_preset(0, &gold, Default::default());

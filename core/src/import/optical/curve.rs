@@ -52,13 +52,19 @@ pub(super) fn check_values(n: &Curve, log: &mut Log) {
     }
 }
 
-/// k is 0 or more; a file of n - ik has all of them below.
-pub(super) fn check_signs(k: &Curve, log: &mut Log) {
+/// k is 0 or more; a file of n - ik has all of them below, one whose sign was flipped without need too.
+pub(super) fn check_signs(k: &Curve, flipped: bool, log: &mut Log) {
     let negative = || k.samples.iter().filter(|s| s.value < 0.0);
     let Some(first) = negative().next() else { return };
     if k.samples.iter().all(|s| s.value <= 0.0) {
-        let remedy = "if that is meant, ask for the other sign: --flip-k";
-        log.fault(&k.file, first.line(), "all k are negative: the file gives n - ik, Burnish reads n + ik", remedy);
+        let (reason, remedy) = match flipped {
+            true => ("all k are positive in the file, and its sign was to be flipped", "leave --flip-k away"),
+            false => (
+                "all k are negative: the file gives n - ik, Burnish reads n + ik",
+                "if that is meant, ask for the other sign: --flip-k",
+            ),
+        };
+        log.fault(&k.file, first.line(), reason, remedy);
         return;
     }
     for sample in negative() {

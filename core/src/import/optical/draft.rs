@@ -5,7 +5,7 @@ use serde_json::Map;
 use super::curve::{Curve, Table, check_signs, check_values, joined, ordered};
 use super::report::Log;
 use super::{Format, ImportReport, Imported, Options, Unit, UnitOrigin, unit};
-use crate::material::preset::{self, Preset, PresetError, REQUIRED_RANGE_NM, Source};
+use crate::material::preset::{self, Preset, PresetError, REQUIRED_RANGE_NM, Source, reaches_required};
 
 /// Light that is seen, nm.
 const VISIBLE_NM: std::ops::RangeInclusive<f64> = 380.0..=780.0;
@@ -84,7 +84,7 @@ impl Draft {
             log.fault(&self.n.file, None, "holds no rows of numbers", "give rows of wavelength, n and k");
         }
         check_values(&self.n, log);
-        check_signs(&self.k, log);
+        check_signs(&self.k, options.flip_k, log);
         let (unit, origin) = self.unit(options, log)?;
         let n = ordered(&self.n, unit, log);
         // What is wrong with the first column of a row is said once.
@@ -154,7 +154,7 @@ impl Draft {
         };
         if count < 2 {
             log.fault(file, None, format!("holds n and k at {count} wavelength"), "a curve needs two points or more");
-        } else if from > need_from || to < need_to {
+        } else if !reaches_required(from, to) {
             let seen = if visible == 0 { ", nothing of the visible range" } else { "" };
             let reason = format!("covers {from} to {to} nm{seen}; {need_from} to {need_to} nm are needed");
             log.fault(file, None, reason, &self.other_units());

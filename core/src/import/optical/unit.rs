@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use crate::material::preset::REQUIRED_RANGE_NM;
+use crate::material::preset::reaches_required;
 
 /// Planck's constant times the speed of light, eV nm: `wavelength = HC_EV_NM / energy`. BIPM 2019, to ten digits.
 pub const HC_EV_NM: f64 = 1_239.841_984;
@@ -60,7 +60,7 @@ impl Unit {
     /// True when a table with values in this range, read in this unit, reaches as far as a preset must.
     pub(super) fn covers(self, range: (f64, f64)) -> bool {
         let (from, to) = self.range_nm(range);
-        from <= REQUIRED_RANGE_NM.0 && to >= REQUIRED_RANGE_NM.1
+        reaches_required(from, to)
     }
 }
 

@@ -13,6 +13,14 @@ pub const VERSION: u32 = 1;
 /// and blue, less than 0.5 % each lies outside.
 pub const REQUIRED_RANGE_NM: (f64, f64) = (400.0, 700.0);
 
+/// What may be missing at either end, nm: photon energies of rounded numbers end a little inside.
+const RANGE_SLACK_NM: f64 = 0.5;
+
+/// True for a table from `first` to `last` nm that reaches [`REQUIRED_RANGE_NM`], give or take half a nanometre.
+pub fn reaches_required(first: f64, last: f64) -> bool {
+    first <= REQUIRED_RANGE_NM.0 + RANGE_SLACK_NM && last >= REQUIRED_RANGE_NM.1 - RANGE_SLACK_NM
+}
+
 /// What a text must be to pass [`is_id`].
 pub(in crate::material) const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
 
@@ -61,9 +69,8 @@ impl Preset {
             }
             last = nm;
         }
-        let (from, to) = REQUIRED_RANGE_NM;
         let first = self.wavelength_nm.first().copied().unwrap_or(f64::INFINITY);
-        if first > from || last < to {
+        if !reaches_required(first, last) {
             let reason = format!("covers {first} to {last} nm");
             return fault("wavelength_nm", reason, "cover 400 to 700 nm at least, better 380 to 780 nm");
         }

@@ -89,7 +89,12 @@ pub fn find(id_or_path: &str) -> Result<Preset, PresetError> {
     let found = by_id
         .or_else(|| library().iter().find(|p| p.id.to_lowercase() == lower))
         .or_else(|| library().iter().find(|p| p.name.to_lowercase() == lower));
-    found.cloned().ok_or_else(|| PresetError::Unknown { wanted: wanted.into(), hint: hint(&lower, &known()) })
+    found.cloned().ok_or_else(|| {
+        let is_table = [".csv", ".txt", ".yml", ".yaml", ".spd"].iter().any(|ending| lower.ends_with(ending));
+        let made = "a table becomes a preset by `burnish fit FILE --out PRESET.json`";
+        let hint = if is_table { made.into() } else { hint(&lower, &known()) };
+        PresetError::Unknown { wanted: wanted.into(), hint }
+    })
 }
 
 /// Ids and names of all presets.

@@ -203,6 +203,7 @@ fn presets_are_found_by_id_name_or_file_and_near_ones_are_named() {
     assert!(text("golt").contains("did you mean Au?"), "{}", text("golt"));
     assert!(text("unobtainium").contains("there are Ag, Al, Au"), "{}", text("unobtainium"));
     assert!(text("").contains("there are"));
+    assert!(text("my-gold.csv").contains("burnish fit FILE --out"), "{}", text("my-gold.csv"));
     assert!(text("missing.json").contains("missing.json: cannot be read"));
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../presets/metals/Ti.json");
     assert_eq!(preset(file), preset("Ti"));

@@ -150,6 +150,9 @@ fn k_of_the_other_sign_is_flipped_when_asked_for_and_not_otherwise() {
     let imported = parse(&text, "Au.csv", &Options { flip_k: true, ..Options::default() }).unwrap();
     is_gold(&imported);
     assert!(texts(&imported.report.notes).contains("flipped"));
+    let positive = "nm,n,k\n400,1.5,1.9\n700,0.2,4\n";
+    let error = parse(positive, "Au.csv", &Options { flip_k: true, ..Options::default() }).unwrap_err().to_string();
+    assert!(error.contains("all k are positive") && error.contains("leave --flip-k away"), "{error}");
 }
 
 #[test]

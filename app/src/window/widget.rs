@@ -204,17 +204,19 @@ pub fn choice_ui<T: AsRef<str>>(
 ) -> Option<usize> {
     let mut picked = None;
     let shown = options.get(index).map_or("choose...", AsRef::as_ref);
-    let list =
-        egui::ComboBox::from_id_salt(label).width(width).height(LIST_HEIGHT).selected_text(shown).truncate().show_ui(
-            ui,
-            |ui| {
-                for (place, option) in options.iter().enumerate() {
-                    if ui.selectable_label(place == index, option.as_ref()).clicked() && place != index {
-                        picked = Some(place);
-                    }
+    let mut list_ui = |ui: &mut egui::Ui| {
+        // A long word is cut at the end of the list's place, not at the end of the panel.
+        ui.set_max_width(width);
+        let list = egui::ComboBox::from_id_salt(label).width(width).height(LIST_HEIGHT).selected_text(shown).truncate();
+        list.show_ui(ui, |ui| {
+            for (place, option) in options.iter().enumerate() {
+                if ui.selectable_label(place == index, option.as_ref()).clicked() && place != index {
+                    picked = Some(place);
                 }
-            },
-        );
+            }
+        })
+    };
+    let list = ui.scope(|ui| list_ui(ui)).inner;
     match name {
         Some(name) => _ = list.response.labelled_by(name.id).on_hover_text(hover),
         None => {

@@ -58,7 +58,7 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
 /// The Fresnel form, with that of the scene as the one that nobody chose.
 fn form_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, material: &str, form: Option<&str>) {
     let of_scene = context.session.document().lighting.settings().text("fresnel").unwrap_or_default();
-    let mut words = vec![format!("as the scene ({of_scene})")];
+    let mut words = vec![format!("scene: {of_scene}")];
     words.extend(FormChoice::IDS.map(String::from));
     let place =
         form.map_or(0, |form| FormChoice::IDS.iter().position(|known| *known == form).map_or(0, |place| place + 1));

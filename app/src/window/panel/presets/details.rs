@@ -126,13 +126,26 @@ pub fn title(metal: &Preset) -> String {
     format!("{} ({})", metal.name, metal.symbol.as_deref().unwrap_or(&metal.id))
 }
 
+/// What is shown of a note that stands in for a source.
+const NOTE_CHARS: usize = 160;
+
 fn origin(metal: &Preset) -> String {
     let source = &metal.source;
     let year = source.year.map(|year| year.to_string());
     let doi = source.doi.as_ref().map(|doi| format!("doi:{doi}"));
     let parts = [source.author.clone(), year, source.journal.clone(), doi];
     let known: Vec<String> = parts.into_iter().flatten().collect();
-    if known.is_empty() { "Source not stated".into() } else { known.join(", ") }
+    if !known.is_empty() {
+        return known.join(", ");
+    }
+    // The comment of an imported table often names who measured it.
+    match metal.note.as_deref().filter(|note| !note.trim().is_empty()) {
+        Some(note) if note.chars().count() > NOTE_CHARS => {
+            format!("{}...", note.chars().take(NOTE_CHARS).collect::<String>())
+        }
+        Some(note) => note.into(),
+        None => "Source not stated".into(),
+    }
 }
 
 /// All that is known of the source.
@@ -170,7 +183,9 @@ mod tests {
             assert!(text.contains(part), "{text}");
         }
         assert!(citation(&gold).contains("Licence of the table: CC0-1.0"), "{}", citation(&gold));
-        let unknown = Preset { source: Default::default(), ..gold };
+        let noted = Preset { source: Default::default(), note: Some("From my bench. ".repeat(20)), ..gold.clone() };
+        assert!(origin(&noted).starts_with("From my bench.") && origin(&noted).chars().count() == NOTE_CHARS + 3);
+        let unknown = Preset { source: Default::default(), note: None, ..gold };
         assert_eq!(origin(&unknown), "Source not stated");
     }
 

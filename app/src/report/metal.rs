@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use burnish_core::material::preset::Source;
 use burnish_core::surface::fresnel::{Form, Fresnel};
 use glam::Vec3;
 
@@ -34,7 +33,7 @@ pub fn section(study: &Study, entry: &Entry) -> String {
         "<article id=\"preset-{id}\" aria-labelledby=\"title-{id}\">\n<header><div><h3 id=\"title-{id}\">{id}: {}</h3>\n",
         escape(&preset.name)
     );
-    let _ = writeln!(html, "<p class=\"soft\">{}</p>", escape(&citation(&preset.source)));
+    let _ = writeln!(html, "<p class=\"soft\">{}</p>", escape(&preset.source.citation()));
     let _ = writeln!(html, "<p>{}</p></div>\n{}</header>", f0_words(entry), balls(entry));
     if let Some(warning) = &preset.warning {
         let _ = writeln!(html, "<p class=\"warning\"><strong>Warning.</strong> {}</p>", escape(warning));
@@ -47,14 +46,6 @@ pub fn section(study: &Study, entry: &Entry) -> String {
     );
     let _ = writeln!(html, "<figure>{}{}</figure>", curves(study, entry), legend(entry));
     html + &parameters(entry) + "</article>\n"
-}
-
-/// What is known of author, year, journal and DOI.
-pub fn citation(source: &Source) -> String {
-    let Source { author, year, journal, doi, .. } = source;
-    let parts =
-        [author.clone(), year.map(|y| y.to_string()), journal.clone(), doi.as_ref().map(|d| format!("doi:{d}"))];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// F0 in words, with what the clamp to Rec.709 changes.

@@ -17,7 +17,6 @@ use burnish_core::surface::fresnel::Form;
 use axis::tick;
 use html::{cell, escape, head, row, table};
 use looks::{brief, percent};
-pub use metal::citation;
 use study::{Entry, Study, Summary, quantile};
 
 /// Upper bounds of the classes `e0` to `e5` of a cell's colour, relative error; `e6` lies beyond.

@@ -71,7 +71,6 @@ impl Study {
     }
 
     fn summary(&self, form: Form) -> Summary {
-        let Tolerance { relative, delta_e } = self.tolerance;
         let studied: Vec<&Studied> = self.entries.iter().filter_map(|entry| entry.studied(form)).collect();
         let sorted = |figure: fn(&Studied) -> f64| {
             let mut figures: Vec<f64> = studied.iter().map(|s| figure(s)).collect();
@@ -84,7 +83,7 @@ impl Study {
             ratio: quantile(&sorted(|s| s.ratio), 0.5),
             errors: sorted(|s| s.fit.relative),
             delta_e: sorted(|s| s.fit.delta_e),
-            within: studied.iter().filter(|s| s.fit.relative <= relative && s.fit.delta_e <= delta_e).count(),
+            within: studied.iter().filter(|s| self.tolerance.allows(&s.fit)).count(),
             chosen: self.entries.iter().filter(|entry| entry.cheapest.form == form).count(),
         }
     }

@@ -18,6 +18,7 @@ mod request;
 mod session;
 mod shortcuts;
 mod stage;
+mod still_plot;
 mod table_import;
 mod theme;
 mod thumbnails;

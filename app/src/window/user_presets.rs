@@ -177,7 +177,7 @@ pub fn key_of(material: &SavedMaterial) -> String {
 /// Gives a metal numbers and errors of its forms where it has none of its table; takes a tenth of a second then. Not
 /// for the thread of the window.
 pub fn fit(metal: &mut Preset) {
-    if !metal.fits.as_ref().is_some_and(|fits| fits.belong_to(metal)) {
+    if metal.stored_fits().is_none() {
         metal.fits = Some(Fits::new(metal));
     }
 }

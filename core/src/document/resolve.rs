@@ -14,7 +14,7 @@ use crate::material::preset::{Fits, FormChoice, Preset, Tolerance};
 use crate::material::{Material, Reflectance, Sampler, TextureRef, TextureRole};
 use crate::param::ParamSpec;
 use crate::scene::{Environment, Image, Scene, gallery};
-use crate::surface::fresnel::{Form, Fresnel, UnknownForm};
+use crate::surface::fresnel::{Form, Fresnel};
 
 /// Built once: it is the light of every document that names none.
 static STUDIO: LazyLock<Arc<Environment>> = LazyLock::new(|| Arc::new(gallery::studio()));
@@ -50,8 +50,7 @@ impl Curves {
     }
 
     fn cheapest(&mut self, metal: &Preset, tolerance: Tolerance) -> Form {
-        let stored = metal.fits.as_ref().filter(|fits| fits.belong_to(metal));
-        if let Some(fits) = stored {
+        if let Some(fits) = metal.stored_fits() {
             return fits.cheapest(tolerance).form;
         }
         let place = self.fitted.iter().position(|(known, _)| known == metal);
@@ -67,14 +66,12 @@ impl Curves {
 }
 
 impl Document {
-    /// The form of a material's metal: its own where it names one, else that of the lighting settings, whose tolerances
-    /// count for both. The error names a form that this version does not know.
-    pub fn form_choice(&self, own: Option<&str>) -> Result<FormChoice, UnknownForm> {
+    /// The form of a material's metal: its own where it names one that this version knows, else that of the lighting
+    /// settings, whose tolerances count for both.
+    pub fn form_choice(&self, own: Option<&str>) -> FormChoice {
         let settings = self.lighting.settings();
-        match own {
-            Some(id) => FormChoice::read(id, classical::tolerance(&settings)),
-            None => Ok(classical::form_choice(&settings)),
-        }
+        let own = own.and_then(|id| FormChoice::read(id, classical::tolerance(&settings)).ok());
+        own.unwrap_or_else(|| classical::form_choice(&settings))
     }
 }
 
@@ -216,10 +213,11 @@ fn set_reflectance(
     notices: &mut Vec<String>,
 ) {
     let Some(used) = &entry.preset else { return };
-    let form = document.form_choice(used.fresnel.as_deref()).unwrap_or_else(|error| {
+    let own = used.fresnel.as_deref();
+    if let Some(Err(error)) = own.map(|id| FormChoice::read(id, Tolerance::default())) {
         notices.push(format!("material `{}`: {error}; that of the scene is used", entry.name));
-        classical::form_choice(&document.lighting.settings())
-    });
+    }
+    let form = document.form_choice(own);
     match document.metal(&used.id).map(|metal| curves.get(metal, form)) {
         Some(fresnel) => material.reflectance = Reflectance::Preset { id: used.id.clone(), fresnel },
         None => notices.push(format!(

@@ -110,6 +110,16 @@ pub struct Source {
     pub other: Map<String, Value>,
 }
 
+impl Source {
+    /// Author, year, journal and identifier, as far as they are known.
+    pub fn citation(&self) -> String {
+        let Source { author, year, journal, doi, .. } = self;
+        let parts =
+            [author.clone(), year.map(|y| y.to_string()), journal.clone(), doi.as_ref().map(|d| format!("doi:{d}"))];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+}
+
 /// Why there is no preset. Its text names file, field and remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PresetError {
@@ -202,13 +212,14 @@ impl Preset {
         })
     }
 
-    /// Numbers and errors of every form: the stored ones if they belong to the table, else made now, which takes about
-    /// a tenth of a second.
+    /// The stored numbers and errors of every form; none where they are absent or of another table.
+    pub fn stored_fits(&self) -> Option<&Fits> {
+        self.fits.as_ref().filter(|fits| fits.belong_to(self))
+    }
+
+    /// Numbers and errors of every form: the stored ones, else made now, which takes about a tenth of a second.
     pub fn fits(&self) -> Cow<'_, Fits> {
-        match &self.fits {
-            Some(fits) if fits.belong_to(self) => Cow::Borrowed(fits),
-            _ => Cow::Owned(Fits::new(self)),
-        }
+        self.stored_fits().map_or_else(|| Cow::Owned(Fits::new(self)), Cow::Borrowed)
     }
 
     /// The reflectance curve for rendering, in [0, 1].
@@ -216,7 +227,7 @@ impl Preset {
     /// All forms but `sampled-nk` stand for the reflectance integrated over the spectrum. Averaged n and k are never
     /// used: they can be further off than any approximation.
     pub fn fresnel(&self, form: Form) -> Fresnel {
-        let stored = self.fits.as_ref().filter(|fits| form != Form::Spectral && fits.belong_to(self));
+        let stored = self.stored_fits().filter(|_| form != Form::Spectral);
         let of_stored = |fits: &Fits| fits::curve(form, fits.f0.into(), &fits.forms.get(&form)?.parameters);
         stored.and_then(of_stored).unwrap_or_else(|| fits::made(self, form))
     }

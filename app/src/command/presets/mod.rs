@@ -15,7 +15,6 @@ use serde::Serialize;
 
 use super::write_json;
 use crate::failure::{Exit, Failure};
-use crate::report::citation;
 use crate::value;
 
 #[derive(clap::Args)]
@@ -123,7 +122,7 @@ fn write_list(presets: &[PresetInfo], space: Space, out: &mut dyn Write) -> Resu
         writeln!(
             out,
             "{id:id_width$}  {f0:17}  {in_space:18}  {clip:>5}  {mark} {form:12}  {name}: {}",
-            citation(source)
+            source.citation()
         )?;
     }
     writeln!(out)?;

@@ -23,7 +23,7 @@ use super::user_presets::UserPresets;
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
 pub use material::MaterialPanel;
-pub use presets::{FormSettings, PresetsPanel, assign, f0_ui, forms_ui, known_fits, warning_ui};
+pub use presets::{FormSettings, PresetsPanel, assign, f0, f0_ui, forms_ui, warning_ui};
 pub use reflectance::ReflectancePanel;
 pub use scene_tree::SceneTree;
 pub use start::StartPage;

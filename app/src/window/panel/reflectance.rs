@@ -1,17 +1,17 @@
 //! Reflectance against angle: how the inspector's material reflects, and how its metal really would.
 
 use burnish_core::document::Document;
-use burnish_core::lighting::classical;
 use burnish_core::material::preset::{FormChoice, Preset};
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::surface::dielectric;
 use burnish_core::surface::fresnel::schlick;
 use eframe::egui::{self, Color32, WidgetInfo};
-use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoint, Text};
+use egui_plot::{GridMark, Line, LineStyle, PlotPoint, Text};
 use glam::{DVec3, Vec3};
 
 use super::Context;
-use super::presets::{known_fits, title};
+use super::presets::title;
+use crate::window::still_plot::still_plot;
 
 /// Degrees that are sampled, and the last of them.
 const STEPS: usize = 90;
@@ -102,10 +102,10 @@ fn caption(document: &Document, index: usize, material: &Material, metal: Option
 fn form_of(document: &Document, index: usize, metal: &Preset) -> &'static str {
     let used = document.materials.get(index).and_then(|entry| entry.preset.as_ref());
     let own = used.and_then(|used| used.fresnel.as_deref());
-    match document.form_choice(own).unwrap_or_else(|_| classical::form_choice(&document.lighting.settings())) {
+    match document.form_choice(own) {
         FormChoice::Of(form) => form.id(),
         FormChoice::Cheapest(tolerance) => {
-            known_fits(metal).map_or(FormChoice::CHEAPEST, |fits| fits.cheapest(tolerance).form.id())
+            metal.stored_fits().map_or(FormChoice::CHEAPEST, |fits| fits.cheapest(tolerance).form.id())
         }
     }
 }
@@ -119,17 +119,11 @@ fn plot_ui(ui: &mut egui::Ui, height: f32, used: &Curve, exact: Option<&Curve>) 
         }
         egui_plot::HoverPosition::Elsewhere { .. } => None,
     };
-    let shown = Plot::new("reflectance")
+    let shown = still_plot("reflectance")
         .id(id)
         .height(height)
         .default_x_bounds(-1.0, STEPS as f64 + 4.0)
         .default_y_bounds(0.0, 1.02)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
         .x_grid_spacer(|_| marks(90, &[30.0, 15.0]))
         .x_axis_formatter(|mark, _| format!("{:.0}°", mark.value))
         .label_formatter(label)

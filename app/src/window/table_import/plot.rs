@@ -2,7 +2,9 @@
 
 use burnish_core::material::preset::Preset;
 use eframe::egui::{self, Align2, Color32, WidgetInfo};
-use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Text, VLine};
+use egui_plot::{Line, LineStyle, PlotPoint, PlotPoints, Text, VLine};
+
+use crate::window::still_plot::still_plot;
 
 /// Light that is seen, nm.
 const VISIBLE_NM: [f64; 2] = [380.0, 780.0];
@@ -26,14 +28,8 @@ pub fn plot_ui(ui: &mut egui::Ui, metal: &Preset, height: f32) {
         egui_plot::HoverPosition::Elsewhere { .. } => None,
     };
     let grey = ui.visuals().weak_text_color();
-    let shown = Plot::new("n and k")
+    let shown = still_plot("n and k")
         .height(height)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
         .include_y(0.0)
         .include_x(metal.wavelength_nm.first().copied().unwrap_or_default() - BESIDE_NM)
         .include_x(metal.wavelength_nm.last().copied().unwrap_or_default() + BESIDE_NM)

@@ -6,7 +6,7 @@ use eframe::egui::{self, Key, RichText};
 
 use super::plot::plot_ui;
 use super::{Origin, Preview};
-use crate::window::panel::{Context, FormSettings, f0_ui, forms_ui, known_fits, warning_ui};
+use crate::window::panel::{Context, FormSettings, f0, f0_ui, forms_ui, warning_ui};
 use crate::window::widget::{choice_ui, name_input};
 
 /// Points of the window's contents.
@@ -101,8 +101,8 @@ impl Preview {
     }
 
     fn looks_ui(&self, ui: &mut egui::Ui, preset: &Preset, context: &Context<'_>) {
-        f0_ui(ui, known_fits(preset).map_or_else(|| preset.unclamped_f0(), |fits| fits.f0.into()));
-        if let Some(fits) = known_fits(preset) {
+        f0_ui(ui, f0(preset));
+        if let Some(fits) = preset.stored_fits() {
             let settings = FormSettings::new(&context.session.document().lighting.settings());
             forms_ui(ui, fits, settings);
             let reason = fits.cheapest(settings.tolerance).reason;

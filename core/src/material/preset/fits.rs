@@ -9,7 +9,7 @@ use super::{Preset, clamped};
 use crate::color::difference::ciede2000;
 use crate::color::lab::lab_from_rgb;
 use crate::surface::fresnel::fit::{self, F0_MAX, NODES, Target, node};
-use crate::surface::fresnel::{EXPONENTS, Form, Fresnel, TABLE_SIZE, UnknownForm, grazing_slope, gulbrandsen};
+use crate::surface::fresnel::{Form, Fresnel, TABLE_SIZE, UnknownForm, exponents, grazing_slope, gulbrandsen};
 
 /// Wavelengths whose n and k stand for red, green and blue in [`Form::SampledNk`], nm.
 pub const SAMPLED_NM: [f64; 3] = [610.0, 550.0, 465.0];
@@ -30,6 +30,13 @@ impl Default for Tolerance {
     /// 1 %, and a difference of 1, which is about to be seen.
     fn default() -> Tolerance {
         Tolerance { relative: 0.01, delta_e: 1.0 }
+    }
+}
+
+impl Tolerance {
+    /// True for a form that errs by no more.
+    pub fn allows(self, fit: &Fit) -> bool {
+        fit.relative <= self.relative && fit.delta_e <= self.delta_e
     }
 }
 
@@ -149,9 +156,8 @@ pub(super) fn lenient<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Opti
 }
 
 fn cheapest(forms: &BTreeMap<Form, Fit>, tolerance: Tolerance) -> Cheapest {
-    let does = |fit: &Fit| fit.relative <= tolerance.relative && fit.delta_e <= tolerance.delta_e;
     let percent = |fit: &Fit| format!("{:.2} %", 100.0 * fit.relative);
-    let found = forms.iter().find(|(form, fit)| does(fit) || **form == Form::Spectral);
+    let found = forms.iter().find(|(form, fit)| tolerance.allows(fit) || **form == Form::Spectral);
     let Some((&form, fit)) = found else {
         return Cheapest { form: Form::Spectral, reason: "no form was fitted".into() };
     };
@@ -207,7 +213,7 @@ impl<'a> Fitter<'a> {
             .map(|(i, (truth, lab))| {
                 let value = fresnel.eval(node(i) as f32);
                 let error = (value - *truth).abs();
-                let relative = error / truth.max(Vec3::splat(1e-6));
+                let relative = error / truth.max(Vec3::splat(fit::LEAST as f32));
                 let difference = ciede2000(lab_from_rgb(value.as_dvec3()), *lab);
                 [f64::from(relative.max_element()), error.max_element().into(), difference]
             })
@@ -271,9 +277,8 @@ impl<'a> Fitter<'a> {
 
     fn series<const TERMS: usize>(&self) -> Parameters {
         let values = self.targets.each_ref().map(fit::series::<TERMS>);
-        let exponents = EXPONENTS.iter().find(|e| e.len() == TERMS).copied().unwrap_or_default();
         let name = |(i, e): (usize, &u32)| (format!("c{e}"), values.map(|v| v[i]));
-        exponents.iter().enumerate().map(name).collect()
+        exponents(TERMS).iter().enumerate().map(name).collect()
     }
 
     /// Letters of the channels for which something holds.
@@ -292,14 +297,16 @@ impl<'a> Fitter<'a> {
         let term = |name: &str, c: usize| parameters.get(name).map_or(0.0, |values| values[c]);
         let dip = |c: usize, x: f64| {
             let y = 1.0 - x;
+            let series = |terms: usize| {
+                x * exponents(terms).iter().map(|&e| term(&format!("c{e}"), c) * y.powi(e as i32)).sum::<f64>()
+            };
             match form {
                 Form::Rescaled => Some(0.0),
                 Form::Fitted | Form::Recipe => Some(fit::Dip { a: term("a", c), alpha: term("alpha", c) }.at(x)),
                 Form::F82 | Form::F82Fitted => Some(term("b", c) * x * y.powi(6)),
-                Form::Series2 | Form::Series3 | Form::Series4 => {
-                    let exponents = EXPONENTS[form as usize - Form::Series2 as usize];
-                    Some(x * exponents.iter().map(|&e| term(&format!("c{e}"), c) * y.powi(e as i32)).sum::<f64>())
-                }
+                Form::Series2 => Some(series(2)),
+                Form::Series3 => Some(series(3)),
+                Form::Series4 => Some(series(4)),
                 _ => None,
             }
         };

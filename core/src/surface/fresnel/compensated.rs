@@ -4,8 +4,16 @@ use glam::Vec3;
 
 use super::schlick;
 
-/// Exponents of the series of two, three and four terms. Powers of `y = 1 - x` that a few products reach.
-pub const EXPONENTS: [&[u32]; 3] = [&[3, 8], &[2, 6, 12], &[2, 4, 8, 16]];
+/// Exponents of the series of two, three or four terms; none for another number. Powers of `y = 1 - x` that a few
+/// products reach.
+pub const fn exponents(terms: usize) -> &'static [u32] {
+    match terms {
+        2 => &[3, 8],
+        3 => &[2, 6, 12],
+        4 => &[2, 4, 8, 16],
+        _ => &[],
+    }
+}
 
 /// `F* - a x (1 - x)^alpha`, F* = [`schlick`] to 1. Lazanyi and Szirmay-Kalos 2005, Fresnel Term Approximations for
 /// Metals. `alpha` is positive; 0 at `cos_theta` = 1 whatever `alpha`, so that F0 stays exact.

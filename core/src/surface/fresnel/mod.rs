@@ -18,7 +18,7 @@ mod tests;
 
 use glam::Vec3;
 
-pub use compensated::{EXPONENTS, compensated, f82, series2, series3, series4};
+pub use compensated::{compensated, exponents, f82, series2, series3, series4};
 pub use dielectric::dielectric;
 pub use exact::{INDEX_MAX, INDEX_MIN, conductor, exact, f0, grazing_slope};
 pub use form::{Form, UnknownForm};

@@ -2,14 +2,13 @@
 
 use std::sync::LazyLock;
 
-use burnish_core::lighting::classical;
-use burnish_core::material::preset::{FormChoice, Preset};
+use burnish_core::material::preset::{Cheapest, FormChoice, Preset};
 use burnish_core::material::{Material, TextureRole};
 use burnish_core::surface::fresnel::Form;
 use eframe::egui;
 
 use super::Context;
-use crate::window::panel::presets::{known_fits, title};
+use crate::window::panel::presets::{ERRORS, errors, line, title};
 use crate::window::widget::{choice_ui, name_ui, reset_ui};
 
 /// What the Fresnel forms are.
@@ -46,12 +45,11 @@ pub fn metal_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize) {
     });
     form_ui(ui, context, index, &entry.name, used.fresnel.as_deref());
     if let Some(metal) = metal {
-        let of_scene = || classical::form_choice(&document.lighting.settings());
-        errors_ui(ui, metal, document.form_choice(used.fresnel.as_deref()).unwrap_or_else(|_| of_scene()));
+        errors_ui(ui, metal, document.form_choice(used.fresnel.as_deref()));
     }
     let texts = context.session.scene().materials.get(index).map(overrides).unwrap_or_default();
     for text in texts {
-        ui.add(egui::Label::new(egui::RichText::new(format!("• {text}")).small()).wrap());
+        line(ui, format!("• {text}"));
     }
 }
 
@@ -82,23 +80,15 @@ fn form_ui(ui: &mut egui::Ui, context: &mut Context<'_>, index: usize, material:
 
 /// How far the form is from the truth, and why it was chosen. Nothing for metals that were not fitted yet.
 fn errors_ui(ui: &mut egui::Ui, metal: &Preset, choice: FormChoice) {
-    let Some(fits) = known_fits(metal) else { return };
-    let form = match choice {
-        FormChoice::Cheapest(tolerance) => fits.cheapest(tolerance).form,
-        FormChoice::Of(form) => form,
+    let Some(fits) = metal.stored_fits() else { return };
+    let Cheapest { form, reason } = match choice {
+        FormChoice::Cheapest(tolerance) => fits.cheapest(tolerance),
+        FormChoice::Of(form) => Cheapest { form, reason: form.help().into() },
     };
     let Some(fit) = fits.forms.get(&form) else { return };
-    let text = format!("{form}: error {:.2} %, ΔE {:.2}", 100.0 * fit.relative, fit.delta_e);
-    let reason = match choice {
-        FormChoice::Cheapest(tolerance) => fits.cheapest(tolerance).reason,
-        FormChoice::Of(form) => form.help().to_string(),
-    };
-    let mut hover = format!(
-        "{reason}.\nLargest relative error over red, green, blue and angle, and largest CIEDE2000 on a ball, against \
-         the spectral curve."
-    );
+    let mut hover = format!("{reason}.\n{ERRORS}");
     hover.extend(fit.note.iter().map(|note| format!("\n{note}")));
-    ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap()).on_hover_text(hover);
+    line(ui, format!("{form}: {}", errors(fit))).on_hover_text(hover);
 }
 
 /// What of the material does not count under a metal.

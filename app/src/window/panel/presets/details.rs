@@ -6,7 +6,7 @@ use burnish_core::material::saved::SavedMaterial;
 use eframe::egui;
 use glam::DVec3;
 
-use super::forms::{FormSettings, forms_ui, known_fits};
+use super::forms::{FormSettings, forms_ui, line};
 use super::item::{Content, Item, f0};
 use crate::window::icon::{self, Icon, icon_button};
 use crate::window::panel::Context;
@@ -55,7 +55,7 @@ pub fn selected_ui(ui: &mut egui::Ui, item: &Item, name: &mut Option<String>, co
     origin_ui(ui, item);
     if let Content::Metal(metal) = &item.content {
         f0_ui(ui, f0(metal));
-        if let Some(fits) = known_fits(metal) {
+        if let Some(fits) = metal.stored_fits() {
             forms_ui(ui, fits, FormSettings::new(&context.session.document().lighting.settings()));
         }
     }
@@ -75,7 +75,7 @@ pub fn f0_ui(ui: &mut egui::Ui, f0: DVec3) {
         let hover = format!(
             "Its color is outside of Rec.709: {r:.3} {g:.3} {b:.3} before it is clamped. The difference is CIEDE2000."
         );
-        wrapped(ui, format!("Outside of Rec.709: {}, clipped by ΔE {:.2}", beyond(&clip), clip.delta_e))
+        line(ui, format!("Outside of Rec.709: {}, clipped by ΔE {:.2}", beyond(&clip), clip.delta_e))
             .on_hover_text(hover);
     }
 }
@@ -88,17 +88,12 @@ fn beyond(clip: &Clip) -> String {
     clipped.map(|(name, (before, _))| format!("{name} {before:.3}")).collect::<Vec<_>>().join(", ")
 }
 
-/// A small text that breaks.
-fn wrapped(ui: &mut egui::Ui, text: impl Into<String>) -> egui::Response {
-    ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap())
-}
-
 /// What speaks against trusting something, with the sign of a warning.
 pub fn warning_ui(ui: &mut egui::Ui, text: &str) {
     ui.horizontal_top(|ui| {
         let (place, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
         icon::paint(ui.painter(), Icon::Warning, place.center(), 5.5, ui.visuals().warn_fg_color);
-        wrapped(ui, format!("Warning: {text}"));
+        line(ui, format!("Warning: {text}"));
     });
 }
 
@@ -111,8 +106,8 @@ pub fn origin_ui(ui: &mut egui::Ui, item: &Item) {
             if let Some(warning) = &metal.warning {
                 warning_ui(ui, warning);
             }
-            wrapped(ui, origin(metal)).on_hover_text(citation(metal));
-            wrapped(ui, range(metal));
+            line(ui, origin(metal)).on_hover_text(citation(metal));
+            line(ui, range(metal));
         }
         Content::Material(material) => {
             ui.strong(format!("{}, saved material", material.name));
@@ -130,13 +125,9 @@ pub fn title(metal: &Preset) -> String {
 const NOTE_CHARS: usize = 160;
 
 fn origin(metal: &Preset) -> String {
-    let source = &metal.source;
-    let year = source.year.map(|year| year.to_string());
-    let doi = source.doi.as_ref().map(|doi| format!("doi:{doi}"));
-    let parts = [source.author.clone(), year, source.journal.clone(), doi];
-    let known: Vec<String> = parts.into_iter().flatten().collect();
+    let known = metal.source.citation();
     if !known.is_empty() {
-        return known.join(", ");
+        return known;
     }
     // The comment of an imported table often names who measured it.
     match metal.note.as_deref().filter(|note| !note.trim().is_empty()) {

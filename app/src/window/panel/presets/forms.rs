@@ -1,18 +1,14 @@
 //! The forms in which a metal can be rendered: the chosen one, the cheapest, and the errors of all.
 
 use burnish_core::lighting::classical;
-use burnish_core::material::preset::{Fit, Fits, FormChoice, Preset, Tolerance};
+use burnish_core::material::preset::{Fit, Fits, FormChoice, Tolerance};
 use burnish_core::param::Settings;
 use burnish_core::surface::fresnel::Form;
 use eframe::egui::{self, RichText};
 
-const ERRORS: &str = "Largest relative error over red, green, blue and angle, and largest CIEDE2000 on a ball, against \
+/// What the errors of a form are.
+pub const ERRORS: &str = "Largest relative error over red, green, blue and angle, and largest CIEDE2000 on a ball, against \
                       the spectral curve.";
-
-/// The fits that a metal carries; none where they are not of its table. Never makes them: that takes a tenth of a second.
-pub fn known_fits(metal: &Preset) -> Option<&Fits> {
-    metal.fits.as_ref().filter(|fits| fits.belong_to(metal))
-}
 
 /// What the lighting settings say about forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +33,11 @@ pub fn forms_ui(ui: &mut egui::Ui, fits: &Fits, settings: FormSettings) {
         && form != cheapest.form
         && let Some(fit) = fits.forms.get(&form)
     {
-        line(ui, &format!("Form of the scene: {form}, {}", errors(fit))).on_hover_text(help(form, Some(fit)));
+        line(ui, format!("Form of the scene: {form}, {}", errors(fit))).on_hover_text(help(form, Some(fit)));
     }
     let fit = fits.forms.get(&cheapest.form);
     let text = format!("Cheapest form: {}{}", cheapest.form, fit.map_or(String::new(), |f| format!(", {}", errors(f))));
-    line(ui, &text).on_hover_text(help(cheapest.form, fit));
+    line(ui, text).on_hover_text(help(cheapest.form, fit));
     ui.horizontal_wrapped(|ui| {
         let button = ui.menu_button(RichText::new("All forms").small(), |ui| table_ui(ui, fits, cheapest.form));
         button.response.on_hover_text("Errors of every form of this metal, the cheapest to draw first");
@@ -54,11 +50,13 @@ pub fn forms_ui(ui: &mut egui::Ui, fits: &Fits, settings: FormSettings) {
     });
 }
 
-fn line(ui: &mut egui::Ui, text: &str) -> egui::Response {
+/// A small text that breaks.
+pub fn line(ui: &mut egui::Ui, text: impl Into<String>) -> egui::Response {
     ui.add(egui::Label::new(RichText::new(text).small()).wrap())
 }
 
-fn errors(fit: &Fit) -> String {
+/// The errors of a form in words.
+pub fn errors(fit: &Fit) -> String {
     format!("error {:.2} %, ΔE {:.2}", 100.0 * fit.relative, fit.delta_e)
 }
 
@@ -108,7 +106,7 @@ mod tests {
         let gold = preset::find("Au").unwrap();
         let settings = FormSettings { choice: FormChoice::Of(Form::Schlick), tolerance: Tolerance::default() };
         let mut shown = Harness::builder().with_size(egui::vec2(320.0, 500.0)).build_ui(|ui| {
-            forms_ui(ui, known_fits(&gold).unwrap(), settings);
+            forms_ui(ui, gold.stored_fits().unwrap(), settings);
         });
         let fits = gold.fits();
         let cheapest = fits.cheapest(Tolerance::default()).form;
@@ -125,8 +123,8 @@ mod tests {
     #[test]
     fn fits_of_another_table_are_not_shown() {
         let gold = preset::find("Au").unwrap();
-        assert!(known_fits(&gold).is_some());
+        assert!(gold.stored_fits().is_some());
         let k = gold.k.iter().map(|k| 1.1 * k).collect();
-        assert!(known_fits(&Preset { k, ..gold }).is_none());
+        assert!(preset::Preset { k, ..gold }.stored_fits().is_none());
     }
 }

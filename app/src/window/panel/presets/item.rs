@@ -210,7 +210,7 @@ pub fn common_tags(items: &[Item]) -> Vec<String> {
 
 /// Reflectance at normal incidence, linear Rec.709, not clamped. The stored one saves an integral.
 pub fn f0(metal: &Preset) -> DVec3 {
-    super::known_fits(metal).map_or_else(|| metal.unclamped_f0(), |fits| fits.f0.into())
+    metal.stored_fits().map_or_else(|| metal.unclamped_f0(), |fits| fits.f0.into())
 }
 
 fn visible(reflectance: DVec3) -> Vec3 {

@@ -15,9 +15,9 @@ use burnish_core::material::preset::Preset;
 use eframe::egui;
 
 pub use details::{f0_ui, title, warning_ui};
-pub use forms::{FormSettings, forms_ui, known_fits};
-pub use item::assign;
+pub use forms::{ERRORS, FormSettings, errors, forms_ui, line};
 use item::{Item, common_tags, list};
+pub use item::{assign, f0};
 
 use super::{Context, DraggedPreset};
 use crate::window::files::typed_path;

@@ -1,6 +1,6 @@
 //! Fits of the forms that take a dip off Schlick's curve.
 
-use super::super::EXPONENTS;
+use super::super::exponents;
 use super::{F82_COSINE, LEAST, RECIPE_COSINE, Target, node};
 use crate::math::minimax::minimax;
 use crate::math::minimize::on_interval;
@@ -67,10 +67,9 @@ pub fn fitted(target: &Target) -> Dip {
     least.unwrap_or(none).0
 }
 
-/// Coefficients of the series of two, three or four terms ([`EXPONENTS`]) with the least largest relative error.
+/// Coefficients of the series of two, three or four terms ([`exponents`]) with the least largest relative error.
 pub fn series<const TERMS: usize>(target: &Target) -> [f64; TERMS] {
-    let exponents = EXPONENTS.iter().find(|e| e.len() == TERMS).copied().unwrap_or_default();
-    let exponents = std::array::from_fn(|i| exponents.get(i).map_or(1.0, |&e| f64::from(e)));
+    let exponents = std::array::from_fn(|i| exponents(TERMS).get(i).map_or(1.0, |&e| f64::from(e)));
     minimax(&relative(exponents, target), &excess(target))
 }
 

@@ -73,7 +73,7 @@ impl Target {
 }
 
 /// Reflectance that counts as none: below it an error is not divided by it. Only an index near 1 goes there.
-const LEAST: f64 = 1e-6;
+pub(crate) const LEAST: f64 = 1e-6;
 
 /// The largest, or infinity where one is not a number.
 pub(crate) fn largest(errors: impl Iterator<Item = f64>) -> f64 {

@@ -17,5 +17,7 @@ pub mod math;
 pub mod measure;
 pub mod param;
 pub mod picture;
+pub mod reference;
 pub mod scene;
 pub mod surface;
+pub mod trace;

@@ -75,6 +75,21 @@ impl Document {
     }
 }
 
+impl Document {
+    /// A resolved scene with every metal in one form, whatever its material asks for: what the reference traces.
+    pub fn in_form(&self, scene: &Arc<Scene>, choice: FormChoice, curves: &mut Curves) -> Arc<Scene> {
+        let mut scene = Scene::clone(scene);
+        for material in &mut scene.materials {
+            if let Reflectance::Preset { id, fresnel } = &mut material.reflectance
+                && let Some(metal) = self.metal(id)
+            {
+                *fresnel = curves.get(metal, choice);
+            }
+        }
+        Arc::new(scene)
+    }
+}
+
 /// A scene with what stands in for something else in it.
 #[derive(Clone, Debug)]
 pub struct Resolved {

@@ -1,0 +1,3 @@
+//! Speed of building and asking the ray tracing structure.
+
+fn main() {}

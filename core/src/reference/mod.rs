@@ -1,0 +1,54 @@
+//! The truth: unidirectional path tracing.
+//!
+//! A [`World`] is a scene made ready; [`World::sample`] follows one path through one pixel and is a pure function of
+//! seed, pixel and number of the sample, so that any number of threads gives the same picture.
+
+mod settings;
+mod world;
+
+use glam::{UVec2, Vec3};
+
+use crate::scene::Camera;
+
+pub use settings::{Options, PARAMS};
+pub use world::World;
+
+/// Id of the method, as documents name it.
+pub const ID: &str = "reference";
+
+/// What is looked at, and from where.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The eye.
+    pub camera: Camera,
+    /// Pixels of the picture.
+    pub size: UVec2,
+    /// Pictures of different seeds are independent of each other.
+    pub seed: u32,
+}
+
+/// What one path brought back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSample {
+    /// Scene-linear Rec.709; may be not finite where something is wrong, the film counts and drops such samples.
+    pub radiance: Vec3,
+    /// Radiance that the clamp took away; zero without one.
+    pub clamped: Vec3,
+    /// The first surface.
+    pub first: Option<FirstHit>,
+    /// Rays that were cast, of both kinds.
+    pub rays: u32,
+}
+
+/// The surface that a path meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Shading normal in the world, unit.
+    pub normal: Vec3,
+    /// Share of even light that the surface sends back toward the eye, about.
+    pub albedo: Vec3,
+    /// Index into `Scene::instances`.
+    pub instance: u32,
+    /// Index into `Scene::materials`.
+    pub material: u32,
+}

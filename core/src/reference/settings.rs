@@ -1,0 +1,96 @@
+//! What the path tracer can be told.
+
+use crate::lighting::classical;
+use crate::material::preset::FormChoice;
+use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::surface::fresnel::Form;
+use crate::surface::ggx::Masking;
+
+/// Settings of this method.
+pub const PARAMS: &[ParamSpec] = &[
+    ParamSpec {
+        key: "bounces",
+        label: "Bounces",
+        unit: "",
+        kind: ParamKind::Integer { min: 0, max: 1024, default: 64 },
+        help: "Most surfaces that light touches on its way to the eye, 1 for direct light only; 0 shows what glows by itself.",
+        affects: Affects::Frame,
+    },
+    ParamSpec {
+        key: "clamp",
+        label: "Clamp",
+        unit: "nit",
+        kind: ParamKind::Number { min: 0.0, max: 1e9, default: 0.0 },
+        help: "Largest radiance that a path brings back after its first surface, 0 for no limit. A clamped picture is \
+               not a reference; the light that was taken away is reported.",
+        affects: Affects::Frame,
+    },
+    ParamSpec {
+        key: "masking",
+        label: "Masking",
+        unit: "",
+        kind: ParamKind::Choice { options: &["correlated", "separable"], default: 0 },
+        help: "Smith masking-shadowing: height-correlated, or the product of both sides.",
+        affects: Affects::Frame,
+    },
+    ParamSpec {
+        key: "multiple-scattering",
+        label: "Multiple scattering",
+        unit: "",
+        kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
+        help: "Light that bounces between microfacets (reciprocal Kulla-Conty form).",
+        affects: Affects::Frame,
+    },
+    ParamSpec {
+        key: "fresnel",
+        label: "Fresnel form",
+        unit: "",
+        kind: ParamKind::Choice { options: &FormChoice::IDS, default: SPECTRAL },
+        help: "Form in which all metal presets are traced; spectral is the truth.",
+        affects: Affects::Prepare,
+    },
+];
+
+/// Place of `spectral` among [`FormChoice::IDS`].
+const SPECTRAL: usize = {
+    let mut i = 0;
+    while !matches!(Form::ALL[i], Form::Spectral) {
+        i += 1;
+    }
+    i + 1
+};
+
+/// The settings as a path reads them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Most surfaces on the way.
+    pub bounces: u32,
+    /// Largest radiance of indirect light; infinite for no limit.
+    pub clamp: f32,
+    /// Smith masking.
+    pub masking: Masking,
+    /// Light that bounces between microfacets.
+    pub multiple_scattering: bool,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options::new(&Settings::new(PARAMS))
+    }
+}
+
+impl Options {
+    /// Reads settings made of [`PARAMS`]; what is not there keeps its default.
+    pub fn new(settings: &Settings) -> Options {
+        let bounces = match settings.get("bounces") {
+            Some(ParamValue::Integer(n)) => u32::try_from(n).unwrap_or(0),
+            _ => 64,
+        };
+        let clamp = match settings.get("clamp") {
+            Some(ParamValue::Number(v)) if v > 0.0 => v as f32,
+            _ => f32::INFINITY,
+        };
+        let classical::FrameSettings { masking, multiple_scattering, .. } = classical::FrameSettings::new(settings);
+        Options { bounces, clamp, masking, multiple_scattering }
+    }
+}

@@ -18,6 +18,16 @@ impl Handle {
         self.cancelled.load(Ordering::Relaxed)
     }
 
+    /// Tells the worker that the result is no longer wanted.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Fraction done, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        f32::from_bits(self.progress.load(Ordering::Relaxed))
+    }
+
     /// Tells the fraction done, 0 to 1.
     pub fn set_progress(&self, fraction: f32) {
         self.progress.store(fraction.to_bits(), Ordering::Relaxed);
@@ -83,12 +93,12 @@ impl<T: Send + 'static> Job<T> {
 impl<T> Job<T> {
     /// Fraction done, 0 to 1.
     pub fn progress(&self) -> f32 {
-        f32::from_bits(self.handle.progress.load(Ordering::Relaxed))
+        self.handle.progress()
     }
 
     /// Tells the worker that the result is no longer wanted.
     pub fn cancel(&self) {
-        self.handle.cancelled.store(true, Ordering::Relaxed);
+        self.handle.cancel();
     }
 }
 

@@ -3,6 +3,8 @@
 //! A [`World`] is a scene made ready; [`World::sample`] follows one path through one pixel and is a pure function of
 //! seed, pixel and number of the sample, so that any number of threads gives the same picture.
 
+mod film;
+mod passes;
 mod settings;
 mod world;
 
@@ -10,6 +12,8 @@ use glam::{UVec2, Vec3};
 
 use crate::scene::Camera;
 
+pub use film::{Film, NOTHING, Pixel, Rejected};
+pub use passes::{Control, Pass, preview, trace, trace_with};
 pub use settings::{Options, PARAMS};
 pub use world::World;
 

@@ -203,7 +203,8 @@ impl Session {
             && before.assignments == now.assignments
             && before.objects == now.objects
             && before.presets == now.presets
-            && before.lighting == now.lighting
+            && before.lighting.method == now.lighting.method
+            && before.lighting.settings == now.lighting.settings
             // A notice tells of an unknown one.
             && before.view.tone.parse::<ToneMap>().is_err() == now.view.tone.parse::<ToneMap>().is_err();
         if same {

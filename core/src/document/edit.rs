@@ -3,8 +3,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use serde_json::{Map, Value};
+
 use super::{
-    Assignment, CameraEntry, Document, MaterialEntry, ObjectEntry, PresetUse, TextureChoice, material_keys, role_key,
+    Assignment, CameraEntry, Document, MaterialEntry, ObjectEntry, PresetUse, SHARED_SETTINGS, TextureChoice,
+    material_keys, role_key,
 };
 use crate::lighting::classical;
 use crate::material::finish::Finish;
@@ -12,6 +15,7 @@ use crate::material::preset::{self, Preset};
 use crate::material::saved::SavedMaterial;
 use crate::material::{Material, TextureRole, params};
 use crate::param::{self, ParamError, ParamSpec, ParamValue};
+use crate::reference;
 use crate::scene::Scene;
 
 /// What [`Document::assign_preset`] does with the textures of the material.
@@ -313,15 +317,28 @@ impl Document {
 
     /// Sets a setting of the lighting method; the default is not stored.
     pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
-        let spec = param::find(classical::PARAMS, key)?;
-        let json = spec.json(value);
-        if spec.from_json(&json)? == spec.default() {
-            self.lighting.settings.remove(key);
-        } else {
-            self.lighting.settings.insert(spec.key.into(), json);
-        }
-        Ok(())
+        store(classical::PARAMS, &mut self.lighting.settings, key, value)
     }
+
+    /// Sets a setting of the reference, see [`Document::set_lighting`]; a shared one is set for the method as well.
+    pub fn set_reference(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        if SHARED_SETTINGS.contains(&key) {
+            return self.set_lighting(key, value);
+        }
+        store(reference::PARAMS, &mut self.lighting.reference, key, value)
+    }
+}
+
+/// Keeps a value unless it is the default.
+fn store(specs: &[ParamSpec], stored: &mut Map<String, Value>, key: &str, value: ParamValue) -> Result<(), ParamError> {
+    let spec = param::find(specs, key)?;
+    let json = spec.json(value);
+    if spec.from_json(&json)? == spec.default() {
+        stored.remove(key);
+    } else {
+        stored.insert(spec.key.into(), json);
+    }
+    Ok(())
 }
 
 impl MaterialEntry {

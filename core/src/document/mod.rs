@@ -21,8 +21,10 @@ use serde_json::{Map, Value};
 
 use crate::lighting::classical;
 use crate::material::TextureRole;
-use crate::material::preset::Preset;
-use crate::param::{self, ParamValue, Settings};
+use crate::material::preset::{FormChoice, Preset};
+use crate::param::{self, ParamSpec, ParamValue, Settings};
+use crate::reference;
+use crate::surface::fresnel::Form;
 
 pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
@@ -201,6 +203,9 @@ pub struct LightingEntry {
     /// Changed settings by key.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub settings: Map<String, Value>,
+    /// Changed settings of the [`reference`](crate::reference) by key, without those that it shares with the method.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub reference: Map<String, Value>,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -254,7 +259,7 @@ impl Default for EnvironmentEntry {
 
 impl Default for LightingEntry {
     fn default() -> Self {
-        LightingEntry { method: classical::ID.into(), settings: Map::new(), other: Map::new() }
+        LightingEntry { method: classical::ID.into(), settings: Map::new(), reference: Map::new(), other: Map::new() }
     }
 }
 
@@ -264,18 +269,45 @@ impl Default for ViewEntry {
     }
 }
 
+/// Settings that the reference shares with the lighting method: both are about the same surface.
+pub const SHARED_SETTINGS: [&str; 2] = ["masking", "multiple-scattering"];
+
 impl LightingEntry {
     /// The settings of the method, defaults where nothing or nonsense is stored.
     pub fn settings(&self) -> Settings {
-        let mut settings = Settings::new(classical::PARAMS);
-        for (key, json) in &self.settings {
-            if let Ok(value) = param::find(classical::PARAMS, key).and_then(|spec| spec.from_json(json)) {
-                // Found and accepted above.
+        read_settings(classical::PARAMS, &self.settings)
+    }
+
+    /// The settings of the reference, see [`LightingEntry::settings`]; the shared ones are those of the method.
+    pub fn reference_settings(&self) -> Settings {
+        let mut settings = read_settings(reference::PARAMS, &self.reference);
+        let method = self.settings();
+        for key in SHARED_SETTINGS {
+            if let Some(value) = method.get(key) {
+                // A test holds the two declarations together.
                 let _ = settings.set_value(key, value);
             }
         }
         settings
     }
+
+    /// The form in which the reference traces metals; its cheapest keeps the tolerances of the method.
+    pub fn reference_form(&self) -> FormChoice {
+        let text = self.reference_settings().text("fresnel").unwrap_or_default();
+        let tolerance = classical::tolerance(&self.settings());
+        FormChoice::read(&text, tolerance).unwrap_or(FormChoice::Of(Form::Spectral))
+    }
+}
+
+fn read_settings(specs: &'static [ParamSpec], stored: &Map<String, Value>) -> Settings {
+    let mut settings = Settings::new(specs);
+    for (key, json) in stored {
+        if let Ok(value) = param::find(specs, key).and_then(|spec| spec.from_json(json)) {
+            // Found and accepted above.
+            let _ = settings.set_value(key, value);
+        }
+    }
+    settings
 }
 
 impl MaterialEntry {

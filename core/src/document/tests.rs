@@ -363,3 +363,41 @@ fn the_tolerances_of_the_scene_count_for_every_material_that_takes_the_cheapest_
     document.set_fresnel(0, Some("shiny"));
     assert_eq!(form(&document), RESCALED, "an unknown form is that of the scene");
 }
+
+#[test]
+fn the_reference_keeps_its_own_settings_and_shares_those_of_the_surface() {
+    let mut document = workbench().document;
+    assert!(!document.to_text(Path::new("/")).contains("reference"), "nothing is stored of defaults");
+    for key in SHARED_SETTINGS {
+        let of = |specs| param::find(specs, key).unwrap();
+        assert_eq!(of(classical::PARAMS).kind, of(crate::reference::PARAMS).kind, "{key}");
+    }
+    document.set_reference("bounces", ParamValue::Integer(3)).unwrap();
+    document.set_reference("masking", ParamValue::Choice(1)).unwrap();
+    document.lighting.reference.insert("of-tomorrow".into(), json!([1]));
+    let read = |document: &Document| {
+        let settings = document.lighting.reference_settings();
+        ["bounces", "masking", "clamp"].map(|key| settings.text(key).unwrap())
+    };
+    assert_eq!(read(&document), ["3", "separable", "0"]);
+    assert_eq!(document.lighting.settings().text("masking").as_deref(), Some("separable"));
+    let json = serde_json::from_str(&document.to_text(Path::new("/"))).unwrap();
+    let again = Document::from_json(json, Path::new("/a.burnish")).unwrap();
+    assert_eq!((&again, read(&again)), (&document, read(&document)));
+    assert!(document.set_reference("bounces", ParamValue::Integer(-1)).is_err());
+    document.set_reference("bounces", crate::reference::PARAMS[0].default()).unwrap();
+    assert_eq!(document.lighting.reference.keys().collect::<Vec<_>>(), ["of-tomorrow"]);
+}
+
+#[test]
+fn the_reference_traces_spectral_curves_unless_told_otherwise() {
+    let mut document = workbench().document;
+    assert_eq!(document.lighting.reference_form(), FormChoice::Of(Form::Spectral));
+    let place = FormChoice::IDS.iter().position(|id| *id == Form::Schlick.id()).unwrap();
+    document.set_reference("fresnel", ParamValue::Choice(place)).unwrap();
+    assert_eq!(document.lighting.reference_form(), FormChoice::Of(Form::Schlick));
+    document.set_reference("fresnel", ParamValue::Choice(0)).unwrap();
+    document.lighting.settings.insert("fresnel-error".into(), 5.into());
+    let tolerance = classical::tolerance(&document.lighting.settings());
+    assert_eq!(document.lighting.reference_form(), FormChoice::Cheapest(tolerance));
+}

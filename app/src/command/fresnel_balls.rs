@@ -15,7 +15,7 @@ use burnish_core::surface::fresnel::Form;
 use burnish_render::{Gpu, Renderer, View};
 use glam::{Affine3A, UVec2, Vec3};
 
-use super::render::metal_failure;
+use super::stage::metal_failure;
 use crate::failure::{Exit, Failure};
 use crate::source;
 use crate::value;

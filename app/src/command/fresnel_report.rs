@@ -7,7 +7,7 @@ use burnish_core::file::write_atomic;
 use burnish_core::material::preset::{self, Preset};
 
 use super::presets::Bounds;
-use super::render::metal_failure;
+use super::stage::metal_failure;
 use crate::failure::{Exit, Failure};
 use crate::report::page;
 use crate::report::study::Study;

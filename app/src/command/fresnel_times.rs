@@ -9,7 +9,7 @@ use burnish_core::surface::fresnel::{Form, Fresnel, exact, grazing_slope};
 use burnish_render::{Gpu, times};
 use serde::Serialize;
 
-use super::render::metal_failure;
+use super::stage::metal_failure;
 use super::write_json;
 use crate::failure::{Exit, Failure, printable};
 

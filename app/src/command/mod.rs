@@ -12,6 +12,7 @@ pub mod open;
 mod presets;
 mod render;
 mod snapshot;
+mod stage;
 
 use std::io::Write;
 

@@ -5,7 +5,9 @@
 
 mod film;
 mod passes;
+mod sampler;
 mod settings;
+mod sky;
 mod world;
 
 use glam::{UVec2, Vec3};

@@ -15,23 +15,44 @@ struct Surface {
     multiple_scattering: bool,
 }
 
-// Metal and dielectric below the coat: BRDF without the cosine. They share width and so the microfacet term.
-fn layered_base(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
+// What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share width and so the
+// microfacet term.
+fn layered_glossy(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
     let facet = ggx_microfacet(wo, wi, s.alpha, s.masking);
+    if facet.y <= 0.0 {
+        return vec3f(0.0);
+    }
+    return facet.y * layered_reflectance(s, facet.x);
+}
+
+// Reflectance of metal and dielectric below the coat at the cosine to a (microfacet) normal.
+fn layered_reflectance(s: Surface, cos_theta: f32) -> vec3f {
     var value = vec3f(0.0);
     if s.metallic > 0.0 {
-        var metal = facet.y * fresnel_eval(s.fresnel, facet.x);
-        if s.multiple_scattering {
-            metal += ggx_multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
-        }
-        value += s.metallic * metal;
+        value += s.metallic * fresnel_eval(s.fresnel, cos_theta);
     }
     if s.metallic < 1.0 {
-        var dielectric = facet.y * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, facet.x);
-        dielectric += dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
-        value += (1.0 - s.metallic) * dielectric;
+        value += (1.0 - s.metallic) * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
     }
     return value;
+}
+
+// What leaves in all directions: the matte base of the dielectric, and light that scattered more than once in the metal.
+fn layered_spread(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
+    var value = vec3f(0.0);
+    if s.metallic > 0.0 && s.multiple_scattering {
+        value += s.metallic * ggx_multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
+    }
+    if s.metallic < 1.0 {
+        value += (1.0 - s.metallic)
+            * dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
+    }
+    return value;
+}
+
+// Metal and dielectric below the coat: BRDF without the cosine.
+fn layered_base(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
+    return layered_glossy(s, wo, wi) + layered_spread(s, wo, wi);
 }
 
 // Reflected radiance over incident radiance and solid angle: all lobes times their cosine. wo and wi are given in the

@@ -45,23 +45,42 @@ pub struct Surface<'a> {
     pub multiple_scattering: bool,
 }
 
-/// Metal and dielectric below the coat: BRDF without the cosine. They share width and so the microfacet term.
-pub fn base(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
+/// What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share width and so the
+/// microfacet term. On a mirror this is the part that has no density.
+pub fn glossy(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
     let facet = ggx::microfacet(wo, wi, s.alpha, s.masking);
+    if facet.y > 0.0 { facet.y * reflectance(s, facet.x) } else { Vec3::ZERO }
+}
+
+/// Reflectance of metal and dielectric below the coat at the cosine to a (microfacet) normal.
+pub fn reflectance(s: &Surface, cos_theta: f32) -> Vec3 {
     let mut value = Vec3::ZERO;
     if s.metallic > 0.0 {
-        let mut metal = facet.y * s.fresnel.eval(facet.x);
-        if s.multiple_scattering {
-            metal += ggx::multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
-        }
-        value += s.metallic * metal;
+        value += s.metallic * s.fresnel.eval(cos_theta);
     }
     if s.metallic < 1.0 {
-        let reflected = facet.y * schlick(s.dielectric_f0, s.dielectric_f90, facet.x);
-        let base = dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
-        value += (1.0 - s.metallic) * (reflected + base);
+        value += (1.0 - s.metallic) * schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
     }
     value
+}
+
+/// What leaves in all directions after it went on below the first reflection: the matte base of the dielectric and light
+/// that scattered more than once in the metal. BRDF without the cosine.
+pub fn spread(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
+    let mut value = Vec3::ZERO;
+    if s.metallic > 0.0 && s.multiple_scattering {
+        value += s.metallic * ggx::multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
+    }
+    if s.metallic < 1.0 {
+        let base = dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
+        value += (1.0 - s.metallic) * base;
+    }
+    value
+}
+
+/// Metal and dielectric below the coat, [`glossy`] and [`spread`]: BRDF without the cosine.
+pub fn base(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
+    glossy(s, wo, wi) + spread(s, wo, wi)
 }
 
 /// Radiance toward `wo` over radiance from `wi` and solid angle: all lobes, each times the cosine of its own normal.

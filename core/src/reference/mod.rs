@@ -3,11 +3,18 @@
 //! A [`World`] is a scene made ready; [`World::sample`] follows one path through one pixel and is a pure function of
 //! seed, pixel and number of the sample, so that any number of threads gives the same picture.
 
+mod bsdf;
+mod emitters;
 mod film;
+mod lamps;
+mod lights;
 mod passes;
+mod path;
+mod point;
 mod sampler;
 mod settings;
 mod sky;
+mod texture;
 mod world;
 
 use glam::{UVec2, Vec3};

@@ -26,6 +26,14 @@ pub struct SkySample {
 #[derive(Clone, Debug)]
 pub struct Sky {
     map: Arc<Environment>,
+    tables: Arc<Tables>,
+}
+
+/// What depends on the texels alone.
+#[derive(Debug)]
+struct Tables {
+    width: usize,
+    height: usize,
     /// Weight of texel centres in the density, row by row.
     weights: Vec<f32>,
     /// Share of the rows of cells before each, from 0 to 1; one more than there are rows.
@@ -34,13 +42,91 @@ pub struct Sky {
     columns: Vec<f32>,
     /// Cosine of the polar angle at which rows of cells begin; one more than there are rows.
     edges: Vec<f64>,
-    /// Cosine-weighted mean irradiance of a surface that sees all of it, over pi: the mean radiance.
+    /// Mean radiance over the sphere, without strength.
     mean: Vec3,
 }
 
 impl Sky {
     /// Makes a map ready.
     pub fn new(map: &Arc<Environment>) -> Sky {
+        Sky { map: map.clone(), tables: Arc::new(Tables::new(map)) }
+    }
+
+    /// Makes another map ready; one with the same texels shares the tables.
+    pub fn updated(&self, map: &Arc<Environment>) -> Sky {
+        if !Arc::ptr_eq(&self.map.texels, &map.texels) {
+            return Sky::new(map);
+        }
+        Sky { map: map.clone(), tables: self.tables.clone() }
+    }
+
+    /// False where sampling would bring nothing: black maps and maps of one colour.
+    pub fn is_sampled(&self) -> bool {
+        self.tables.rows.last().is_some_and(|last| *last > 0.0)
+    }
+
+    /// Mean radiance over the sphere, strength included.
+    pub fn mean(&self) -> Vec3 {
+        self.map.strength * self.tables.mean
+    }
+
+    /// Radiance from a world direction, strength included.
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
+        self.map.radiance(direction)
+    }
+
+    /// Density of [`Sky::sample`] per steradian; 0 where the map is not sampled.
+    pub fn pdf(&self, direction: Vec3) -> f32 {
+        if !self.is_sampled() {
+            return 0.0;
+        }
+        let Tables { width, height, edges, .. } = &*self.tables;
+        let (w, h) = (*width, *height);
+        let uv = self.map.uv_from_direction(direction);
+        let x = uv.x * w as f32 - 0.5;
+        let i = (x.floor() as i64).rem_euclid(w as i64) as usize;
+        let j = ((uv.y * h as f32 + 0.5) as usize).min(h);
+        let t = (edges[j] - f64::from(direction.y)) / (edges[j] - edges[j + 1]);
+        self.tables.cell_pdf(i, j, Vec2::new(x - x.floor(), t.clamp(0.0, 1.0) as f32))
+    }
+
+    /// A direction; `u` in `[0, 1)^2`. `None` where the map is not sampled.
+    pub fn sample(&self, u: Vec2) -> Option<SkySample> {
+        if !self.is_sampled() {
+            return None;
+        }
+        let Tables { width, height, rows, columns, edges, .. } = &*self.tables;
+        let (w, h) = (*width, *height);
+        let y = f64::from(u.y);
+        let j = (rows.partition_point(|share| *share <= y)).clamp(1, h + 1) - 1;
+        let height = rows[j + 1] - rows[j];
+        let row = &columns[j * (w + 1)..(j + 1) * (w + 1)];
+        let i = row.partition_point(|share| *share <= u.x).clamp(1, w) - 1;
+        let width = row[i + 1] - row[i];
+        if height <= 0.0 || width <= 0.0 {
+            return None;
+        }
+        let inside = Vec2::new((u.x - row[i]) / width, ((y - rows[j]) / height) as f32);
+        let [a, b, c, d] = self.tables.corners(i, j);
+        let t = linear(a + b, c + d, inside.y);
+        let s = linear(lerp(a, c, t), lerp(b, d, t), inside.x);
+        let pdf = self.tables.cell_pdf(i, j, Vec2::new(s, t));
+        let cos_theta = edges[j] + (edges[j + 1] - edges[j]) * f64::from(t);
+        let direction = self.direction(i as f32 + 0.5 + s, cos_theta);
+        (pdf > 0.0 && pdf.is_finite()).then_some(SkySample { direction, pdf })
+    }
+
+    /// World direction of a column (in texels) and a cosine of the polar angle.
+    fn direction(&self, column: f32, cos_theta: f64) -> Vec3 {
+        let phi = (column / self.map.width as f32 - 0.5) * TAU - self.map.rotation;
+        let (sin_phi, cos_phi) = phi.sin_cos();
+        let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt() as f32;
+        Vec3::new(sin_theta * sin_phi, cos_theta as f32, -sin_theta * cos_phi)
+    }
+}
+
+impl Tables {
+    fn new(map: &Environment) -> Tables {
         let (w, h) = (map.width as usize, map.height as usize);
         let mean = mean_radiance(map);
         let least = brightness(mean);
@@ -49,29 +135,30 @@ impl Sky {
             // Rounding of the mean must not make a density out of nothing.
             if value > 1e-4 * least { value } else { 0.0 }
         };
-        let mut sky = Sky {
-            map: map.clone(),
+        let mut tables = Tables {
+            width: w,
+            height: h,
             weights: map.texels.iter().take(w * h).map(weight).collect(),
             rows: vec![0.0],
             columns: Vec::with_capacity((h + 1) * (w + 1)),
             edges: (0..=h + 1).map(|j| edge(j, h)).collect(),
-            mean: map.strength * mean,
+            mean,
         };
-        sky.weights.resize(w * h, 0.0);
+        tables.weights.resize(w * h, 0.0);
         let mut total = 0.0;
         for j in 0..=h {
-            total += sky.push_row(j) * (sky.edges[j] - sky.edges[j + 1]);
-            sky.rows.push(total);
+            total += tables.push_row(j) * (tables.edges[j] - tables.edges[j + 1]);
+            tables.rows.push(total);
         }
         if total > 0.0 {
-            sky.rows.iter_mut().for_each(|share| *share /= total);
+            tables.rows.iter_mut().for_each(|share| *share /= total);
         }
-        sky
+        tables
     }
 
     /// Appends the cells of a row; returns their sum.
     fn push_row(&mut self, j: usize) -> f64 {
-        let w = self.map.width as usize;
+        let w = self.width;
         let mut sums = Vec::with_capacity(w + 1);
         let mut sum = 0.0;
         sums.push(sum);
@@ -86,44 +173,15 @@ impl Sky {
 
     /// Weights at the corners of a cell: upper left, upper right, lower left, lower right.
     fn corners(&self, i: usize, j: usize) -> [f32; 4] {
-        let (w, h) = (self.map.width as usize, self.map.height as usize);
+        let (w, h) = (self.width, self.height);
         let (left, right) = (i, if i + 1 == w { 0 } else { i + 1 });
         let (above, below) = (j.saturating_sub(1) * w, j.min(h - 1) * w);
         [above + left, above + right, below + left, below + right].map(|at| self.weights[at])
     }
 
-    /// False where sampling would bring nothing: black maps and maps of one colour.
-    pub fn is_sampled(&self) -> bool {
-        self.rows.last().is_some_and(|last| *last > 0.0)
-    }
-
-    /// Mean radiance over the sphere, strength included.
-    pub fn mean(&self) -> Vec3 {
-        self.mean
-    }
-
-    /// Radiance from a world direction, strength included.
-    pub fn radiance(&self, direction: Vec3) -> Vec3 {
-        self.map.radiance(direction)
-    }
-
-    /// Density of [`Sky::sample`] per steradian; 0 where the map is not sampled.
-    pub fn pdf(&self, direction: Vec3) -> f32 {
-        if !self.is_sampled() {
-            return 0.0;
-        }
-        let (w, h) = (self.map.width as usize, self.map.height as usize);
-        let uv = self.map.uv_from_direction(direction);
-        let x = uv.x * w as f32 - 0.5;
-        let i = (x.floor() as i64).rem_euclid(w as i64) as usize;
-        let j = ((uv.y * h as f32 + 0.5) as usize).min(h);
-        let t = (self.edges[j] - f64::from(direction.y)) / (self.edges[j] - self.edges[j + 1]);
-        self.cell_pdf(i, j, Vec2::new(x - x.floor(), t.clamp(0.0, 1.0) as f32))
-    }
-
     /// Density at a point of a cell.
     fn cell_pdf(&self, i: usize, j: usize, at: Vec2) -> f32 {
-        let w = self.map.width as usize;
+        let w = self.width;
         let first = j * (w + 1) + i;
         let share = (self.rows[j + 1] - self.rows[j]) as f32 * (self.columns[first + 1] - self.columns[first]);
         let [a, b, c, d] = self.corners(i, j);
@@ -134,39 +192,6 @@ impl Sky {
         let value = lerp(lerp(a, b, at.x), lerp(c, d, at.x), at.y);
         let solid_angle = (self.edges[j] - self.edges[j + 1]) as f32 * TAU / w as f32;
         share * 4.0 * value / (sum * solid_angle)
-    }
-
-    /// A direction; `u` in `[0, 1)^2`. `None` where the map is not sampled.
-    pub fn sample(&self, u: Vec2) -> Option<SkySample> {
-        if !self.is_sampled() {
-            return None;
-        }
-        let (w, h) = (self.map.width as usize, self.map.height as usize);
-        let y = f64::from(u.y);
-        let j = (self.rows.partition_point(|share| *share <= y)).clamp(1, h + 1) - 1;
-        let height = self.rows[j + 1] - self.rows[j];
-        let row = &self.columns[j * (w + 1)..(j + 1) * (w + 1)];
-        let i = row.partition_point(|share| *share <= u.x).clamp(1, w) - 1;
-        let width = row[i + 1] - row[i];
-        if height <= 0.0 || width <= 0.0 {
-            return None;
-        }
-        let inside = Vec2::new((u.x - row[i]) / width, ((y - self.rows[j]) / height) as f32);
-        let [a, b, c, d] = self.corners(i, j);
-        let t = linear(a + b, c + d, inside.y);
-        let s = linear(lerp(a, c, t), lerp(b, d, t), inside.x);
-        let pdf = self.cell_pdf(i, j, Vec2::new(s, t));
-        let cos_theta = self.edges[j] + (self.edges[j + 1] - self.edges[j]) * f64::from(t);
-        let direction = self.direction(i as f32 + 0.5 + s, cos_theta);
-        (pdf > 0.0 && pdf.is_finite()).then_some(SkySample { direction, pdf })
-    }
-
-    /// World direction of a column (in texels) and a cosine of the polar angle.
-    fn direction(&self, column: f32, cos_theta: f64) -> Vec3 {
-        let phi = (column / self.map.width as f32 - 0.5) * TAU - self.map.rotation;
-        let (sin_phi, cos_phi) = phi.sin_cos();
-        let sin_theta = ((1.0 - cos_theta) * (1.0 + cos_theta)).max(0.0).sqrt() as f32;
-        Vec3::new(sin_theta * sin_phi, cos_theta as f32, -sin_theta * cos_phi)
     }
 }
 

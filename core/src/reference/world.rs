@@ -2,30 +2,91 @@
 
 use std::sync::Arc;
 
-use glam::{UVec2, Vec2, Vec3};
+use glam::{Mat3A, UVec2, Vec2, Vec3};
 
-use super::{FirstHit, Options, PathSample, View};
-use crate::math::sampling::Random;
-use crate::scene::Scene;
-use crate::trace::{Accel, Ray};
+use super::lights::Lights;
+use super::point::Triangle;
+use super::sampler::PathSampler;
+use super::{Options, PathSample, View, path};
+use crate::material::{AlphaMode, Material, Reflectance};
+use crate::math::frame::Frame;
+use crate::math::sampling::{pcg, unit};
+use crate::scene::{Mesh, Scene};
+use crate::surface::micro_normal;
+use crate::trace::{Accel, Hit, Ray};
 
 /// A scene made ready for paths.
 #[derive(Clone, Debug)]
 pub struct World {
     scene: Arc<Scene>,
     accel: Accel,
+    lights: Lights,
     options: Options,
+    instances: Vec<Placed>,
+    /// Cosine-weighted mean reflectance of the metal of each material; zero where it has none.
+    fresnel_means: Vec<Vec3>,
+    /// Some surface lets light through.
+    some_cut: bool,
+    /// Some surface is not there from behind.
+    some_one_sided: bool,
+}
+
+/// What rays need to know of an instance.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    normal_from_local: Mat3A,
+    /// -1 where the transform mirrors, else 1.
+    mirroring: f32,
+    two_sided: bool,
+    cut: bool,
+}
+
+/// Which surfaces a ray sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sight {
+    /// What is drawn: backs of one-sided surfaces are not.
+    Eye,
+    /// What light meets: both sides.
+    Light,
 }
 
 impl World {
     /// Makes a scene ready. Its metals are traced in the forms that its materials hold.
     pub fn new(scene: &Arc<Scene>, options: Options) -> World {
-        World { scene: scene.clone(), accel: Accel::new(scene), options }
+        World::of_parts(scene, options, Accel::new(scene), Lights::new(scene))
     }
 
     /// The same for an edited scene; what is unchanged is shared.
     pub fn updated(&self, scene: &Arc<Scene>, options: Options) -> World {
-        World { scene: scene.clone(), accel: self.accel.updated(scene), options }
+        World::of_parts(scene, options, self.accel.updated(scene), self.lights.updated(scene))
+    }
+
+    fn of_parts(scene: &Arc<Scene>, options: Options, accel: Accel, lights: Lights) -> World {
+        let placed = |instance: &crate::scene::Instance| {
+            let matrix = instance.world_from_local.matrix3;
+            let material = &scene.materials[instance.material];
+            Placed {
+                normal_from_local: matrix.inverse().transpose(),
+                mirroring: if matrix.determinant() < 0.0 { -1.0 } else { 1.0 },
+                two_sided: material.double_sided,
+                cut: material.alpha_mode != AlphaMode::Opaque,
+            }
+        };
+        let mean = |material: &Material| match &material.reflectance {
+            Reflectance::Preset { fresnel, .. } => fresnel.mean(),
+            Reflectance::BaseColor => Vec3::ZERO,
+        };
+        let instances: Vec<Placed> = scene.instances.iter().map(placed).collect();
+        World {
+            some_cut: instances.iter().any(|i| i.cut),
+            some_one_sided: instances.iter().any(|i| !i.two_sided),
+            fresnel_means: scene.materials.iter().map(mean).collect(),
+            scene: scene.clone(),
+            accel,
+            lights,
+            options,
+            instances,
+        }
     }
 
     /// The scene.
@@ -40,24 +101,83 @@ impl World {
 
     /// Follows path number `index` through a pixel, which is counted from the top left.
     pub fn sample(&self, view: &View, pixel: UVec2, index: u32) -> PathSample {
-        let seed =
-            u64::from(view.seed) ^ (u64::from(pixel.x) << 8) ^ (u64::from(pixel.y) << 24) ^ (u64::from(index) << 40);
-        let jitter = Random::new(seed).point2();
+        let mut sampler = PathSampler::new(view.seed, pixel, index);
+        let [x, y, ..] = sampler.next4();
         let size = view.size.as_vec2();
-        let at = (pixel.as_vec2() + jitter) / size;
-        let start = view.camera.ray(at, size.x / size.y);
+        let start = view.camera.ray((pixel.as_vec2() + Vec2::new(x, y)) / size, size.x / size.y);
         let ray = Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY };
-        let hit = self.accel.closest(&ray, |_| true);
-        let (radiance, first) = match hit {
-            Some(hit) => {
-                let material = self.scene.instances[hit.instance as usize].material as u32;
-                let albedo = self.scene.materials[material as usize].base_color;
-                let u: Vec2 = hit.barycentric;
-                let shade = 0.5 + 0.5 * u.x;
-                (albedo * shade, Some(FirstHit { normal: Vec3::Y, albedo, instance: hit.instance, material }))
+        path::trace(self, ray, sampler)
+    }
+
+    /// The light of the scene.
+    pub(super) fn lights(&self) -> &Lights {
+        &self.lights
+    }
+
+    /// The nearest surface that is seen; `salt` decides where a surface is half there.
+    pub(super) fn closest(&self, ray: &Ray, sight: Sight, salt: u32) -> Option<Hit> {
+        if self.some_cut || (sight == Sight::Eye && self.some_one_sided) {
+            return self.accel.closest(ray, |hit| self.is_there(ray, hit, sight, salt));
+        }
+        self.accel.closest(ray, |_| true)
+    }
+
+    /// True when something lies on the ray.
+    pub(super) fn occluded(&self, ray: &Ray, salt: u32) -> bool {
+        if self.some_cut {
+            return self.accel.occluded(ray, |hit| self.is_there(ray, hit, Sight::Light, salt));
+        }
+        self.accel.occluded(ray, |_| true)
+    }
+
+    fn is_there(&self, ray: &Ray, hit: &Hit, sight: Sight, salt: u32) -> bool {
+        let placed = &self.instances[hit.instance as usize];
+        let triangle = Triangle::new(self, hit);
+        if sight == Sight::Eye && !placed.two_sided && triangle.normal().dot(ray.direction) > 0.0 {
+            return false;
+        }
+        match self.material(hit.instance).alpha_mode {
+            AlphaMode::Opaque => true,
+            AlphaMode::Mask { cutoff } => triangle.opacity() >= cutoff,
+            AlphaMode::Blend => {
+                let chance = unit(pcg(pcg(salt ^ hit.triangle).wrapping_add(hit.instance)));
+                chance < triangle.opacity()
             }
-            None => (self.scene.environment.as_ref().map_or(Vec3::ZERO, |e| e.radiance(ray.direction)), None),
-        };
-        PathSample { radiance, clamped: Vec3::ZERO, first, rays: 1 }
+        }
+    }
+
+    pub(super) fn mesh(&self, instance: u32) -> &Mesh {
+        &self.scene.meshes[self.scene.instances[instance as usize].mesh]
+    }
+
+    pub(super) fn material(&self, instance: u32) -> &Material {
+        &self.scene.materials[self.scene.instances[instance as usize].material]
+    }
+
+    pub(super) fn fresnel_mean(&self, instance: u32) -> Vec3 {
+        self.fresnel_means[self.scene.instances[instance as usize].material]
+    }
+
+    pub(super) fn normal_from_local(&self, instance: u32) -> Mat3A {
+        self.instances[instance as usize].normal_from_local
+    }
+
+    pub(super) fn mirroring(&self, instance: u32) -> f32 {
+        self.instances[instance as usize].mirroring
+    }
+
+    pub(super) fn is_two_sided(&self, instance: u32) -> bool {
+        self.instances[instance as usize].two_sided
+    }
+
+    /// Gradient of the bumps at a point of an instance, in the world, at full detail. They lie in the frame of the object
+    /// without its scale and shear.
+    pub(super) fn bumps(&self, instance: u32, position: Vec3) -> Vec3 {
+        let m = self.material(instance);
+        let placed = &self.scene.instances[instance as usize].world_from_local;
+        let axis = Vec3::from(placed.matrix3.x_axis).try_normalize().unwrap_or(Vec3::X);
+        let own = Frame::with_tangent(axis, placed.matrix3.y_axis.into());
+        let p = own.to_local(position - Vec3::from(placed.translation));
+        own.to_world(micro_normal::eval(m.micro_normal, p, m.micro_size_mm * 1e-3, 0.0).gradient)
     }
 }

@@ -181,7 +181,7 @@ pub fn pdf(wo: Vec3, wi: Vec3, alpha: Vec2) -> f32 {
 }
 
 /// `wo` reflected at a visible normal; `None` when it ends below the horizon.
-pub(super) fn sample_wi(wo: Vec3, alpha: Vec2, u: Vec2) -> Option<Vec3> {
+pub fn sample_wi(wo: Vec3, alpha: Vec2, u: Vec2) -> Option<Vec3> {
     if wo.z <= 0.0 {
         return None;
     }

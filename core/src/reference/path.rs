@@ -1,0 +1,170 @@
+//! One path, from the eye to the light.
+
+use glam::Vec3;
+
+use super::bsdf::Bsdf;
+use super::lights::{End, LightSample};
+use super::point::Point;
+use super::sampler::PathSampler;
+use super::world::{Sight, World};
+use super::{FirstHit, PathSample};
+use crate::trace::{Ray, offset};
+
+/// Surfaces after which a path may end by chance.
+const ROULETTE_FROM: u32 = 4;
+/// Least chance to go on.
+const SURVIVAL_MIN: f32 = 0.05;
+
+/// A path under way.
+struct Path<'a> {
+    world: &'a World,
+    sampler: PathSampler,
+    /// What light from here on is multiplied by.
+    throughput: Vec3,
+    /// Surfaces met so far.
+    surfaces: u32,
+    radiance: Vec3,
+    clamped: Vec3,
+    rays: u32,
+}
+
+/// Where the last direction was drawn, and with which density: what the light found at its end is weighed by.
+#[derive(Clone, Copy)]
+struct Drawn {
+    position: Vec3,
+    /// Per steradian; infinite from the eye and from mirrors.
+    pdf: f32,
+}
+
+/// Follows a path along a ray from the eye.
+pub(super) fn trace(world: &World, ray: Ray, sampler: PathSampler) -> PathSample {
+    let mut path =
+        Path { world, sampler, throughput: Vec3::ONE, surfaces: 0, radiance: Vec3::ZERO, clamped: Vec3::ZERO, rays: 0 };
+    let first = path.follow(ray);
+    PathSample { radiance: path.radiance, clamped: path.clamped, first, rays: path.rays }
+}
+
+impl Path<'_> {
+    fn follow(&mut self, mut ray: Ray) -> Option<FirstHit> {
+        let world = self.world;
+        let mut first = None;
+        let mut drawn = Drawn { position: ray.origin, pdf: f32::INFINITY };
+        loop {
+            let sight = if self.surfaces == 0 { Sight::Eye } else { Sight::Light };
+            let salt = self.sampler.salt().wrapping_add(self.surfaces);
+            self.rays += 1;
+            let Some(hit) = world.closest(&ray, sight, salt) else {
+                let light = balance(drawn.pdf, || world.lights().sky_pdf(world.scene(), drawn.position, ray.direction));
+                self.add(light * world.lights().sky(ray.direction));
+                return first;
+            };
+            let to_viewer = -ray.direction;
+            let point = Point::new(world, &hit, to_viewer);
+            if !point.front && !world.is_two_sided(hit.instance) {
+                return first;
+            }
+            let bsdf = Bsdf::new(world, &point, to_viewer);
+            if point.emission != Vec3::ZERO {
+                let pdf = || world.lights().emitter_pdf(world.scene(), drawn.position, &hit, point.position);
+                self.add(balance(drawn.pdf, pdf) * bsdf.passed() * point.emission);
+            }
+            if self.surfaces == 0 {
+                let (instance, material) = (hit.instance, point.material);
+                first = Some(FirstHit { normal: point.base.n, albedo: bsdf.albedo(), instance, material });
+            }
+            if self.surfaces == world.options().bounces {
+                return first;
+            }
+            self.surfaces += 1;
+            let [ux, uy, uz, light_z] = self.sampler.next4();
+            if bsdf.has_density() {
+                self.light(&point, &bsdf, light_z);
+            }
+            let Some(sample) = bsdf.sample(Vec3::new(ux, uy, uz)) else { return first };
+            self.throughput *= sample.weight;
+            if !self.survives() {
+                return first;
+            }
+            drawn = Drawn { position: point.position, pdf: sample.pdf };
+            let origin = offset(point.position, point.geometric, sample.wi);
+            ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
+        }
+    }
+
+    /// Adds light that is drawn on purpose.
+    fn light(&mut self, point: &Point, bsdf: &Bsdf, choice: f32) {
+        let world = self.world;
+        let [x, y, ..] = self.sampler.next4();
+        let Some(sample) = world.lights().sample(world.scene(), point.position, Vec3::new(x, y, choice)) else {
+            return;
+        };
+        let (value, pdf) = bsdf.eval(sample.direction);
+        let mut light = value * sample.weight;
+        if sample.pdf.is_finite() {
+            // The balance heuristic of Veach 1997, section 9.2.4.
+            light *= sample.pdf / (sample.pdf + pdf);
+        }
+        // Also false for numbers that are none; those are to be found by the film.
+        if light == Vec3::ZERO {
+            return;
+        }
+        let ray = shadow_ray(point, &sample);
+        let salt = self.sampler.salt().wrapping_sub(self.surfaces);
+        self.rays += 1;
+        if !world.occluded(&ray, salt) {
+            self.add(light);
+        }
+    }
+
+    /// Adds radiance that comes along the path, clamped after the first surface.
+    fn add(&mut self, light: Vec3) {
+        let light = self.throughput * light;
+        let most = self.world.options().clamp;
+        let largest = light.max_element();
+        if self.surfaces > 1 && largest > most {
+            let kept = light * (most / largest);
+            self.clamped += light - kept;
+            self.radiance += kept;
+        } else {
+            self.radiance += light;
+        }
+    }
+
+    /// Russian roulette by the throughput.
+    fn survives(&mut self) -> bool {
+        let largest = self.throughput.max_element();
+        if largest <= 0.0 {
+            return false;
+        }
+        if self.surfaces < ROULETTE_FROM {
+            return true;
+        }
+        let chance = largest.clamp(SURVIVAL_MIN, 1.0);
+        if chance < 1.0 {
+            if self.sampler.independent() >= chance {
+                return false;
+            }
+            self.throughput /= chance;
+        }
+        true
+    }
+}
+
+/// Weight of light that was met with density `pdf` and might have been drawn with another: the balance heuristic.
+fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
+    if pdf.is_finite() { pdf / (pdf + other()) } else { 1.0 }
+}
+
+fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
+    let origin = offset(point.position, point.geometric, sample.direction);
+    match sample.end {
+        // A lamp that lies on a surface is not hidden by it.
+        End::Distance(distance) => Ray { origin, direction: sample.direction, t_max: distance * (1.0 - 1e-4) },
+        End::Surface(end, normal) => {
+            let end = offset(end, normal, -sample.direction);
+            let toward = end - origin;
+            let t_max = toward.length();
+            Ray { origin, direction: toward / t_max, t_max }
+        }
+    }
+}

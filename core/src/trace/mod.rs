@@ -1,11 +1,20 @@
 //! Rays against the triangles of a scene.
 
 mod accel;
+mod brute;
+mod mesh_tree;
 mod offset;
+mod placed;
+#[cfg(test)]
+mod tests;
+mod triangle;
+mod walk;
+mod wide;
 
 use glam::{Vec2, Vec3};
 
 pub use accel::Accel;
+pub use brute::brute_force;
 pub use offset::offset;
 
 /// A part of a line in the world: points `origin + t direction` with `0 <= t < t_max`.

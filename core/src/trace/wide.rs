@@ -149,29 +149,24 @@ fn costs(binary: &[Binary], leaf_size: u8) -> Vec<Cost> {
 }
 
 fn joined(area: f32, first: &Cost, second: &Cost, leaf_size: u8) -> Cost {
-    let mut cost = Cost { primitives: (first.primitives + second.primitives).min(leaf_size + 1), ..Cost::default() };
-    // Costs of two, three and four subtrees, shared out between the children.
-    let mut split = [f32::INFINITY; WIDTH + 1];
-    for total in 2..=WIDTH {
-        for gets in 1..total.min(WIDTH) {
-            if total - gets < WIDTH {
-                let sum = first.of[gets - 1] + second.of[total - gets - 1];
-                if sum < split[total] || gets == 1 {
-                    split[total] = sum;
-                    cost.first_gets[total - 1] = gets as u8;
-                }
-            }
-        }
-    }
-    let as_leaf = if cost.primitives <= leaf_size { area * LEAF_COST } else { f32::INFINITY };
-    let as_node = area + split[WIDTH];
-    cost.is_leaf = as_leaf <= as_node;
-    cost.of[0] = as_leaf.min(as_node);
-    for total in 2..WIDTH {
-        cost.of[total - 1] = split[total];
-        if cost.of[total - 2] <= split[total] {
-            cost.of[total - 1] = cost.of[total - 2];
-            cost.first_gets[total - 1] = 0;
+    // Two, three and four subtrees, shared out between the children.
+    let [two, three, four] = [2, 3, 4].map(|total: usize| {
+        let shared = (1..total).map(|gets| (first.of[gets - 1] + second.of[total - gets - 1], gets as u8));
+        shared.fold((f32::INFINITY, 1), |best, this| if this.0 < best.0 { this } else { best })
+    });
+    let primitives = (first.primitives + second.primitives).min(leaf_size + 1);
+    let as_leaf = if primitives <= leaf_size { area * LEAF_COST } else { f32::INFINITY };
+    let as_node = area + four.0;
+    let mut cost = Cost {
+        of: [as_leaf.min(as_node), two.0, three.0],
+        first_gets: [0, two.1, three.1, four.1],
+        primitives,
+        is_leaf: as_leaf <= as_node,
+    };
+    for more in 1..WIDTH - 1 {
+        if cost.of[more - 1] <= cost.of[more] {
+            cost.of[more] = cost.of[more - 1];
+            cost.first_gets[more] = 0;
         }
     }
     cost

@@ -31,7 +31,7 @@ fn rays(count: usize, size: f32) -> Vec<Ray> {
             1 => -Vec3::AXES[i / 8 % 3],
             _ => (to - from).normalize(),
         };
-        Ray { origin: from, direction, t_max: if i % 5 == 0 { size * random.unit() } else { f32::INFINITY } }
+        Ray { origin: from, direction, t_max: if i.is_multiple_of(5) { size * random.unit() } else { f32::INFINITY } }
     };
     (0..count).map(&mut one).collect()
 }

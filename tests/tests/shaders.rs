@@ -6,8 +6,9 @@ use std::f32::consts;
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::classical;
+use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
-use burnish_core::surface::{coat, fresnel, micro_normal};
+use burnish_core::surface::{coat, fresnel, layered, micro_normal};
 use burnish_render::layout::types::{CONSTANTS, STRUCTS};
 use burnish_render::shader;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -173,6 +174,15 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("GGX_ALBEDO_LOSS_NARROWING", albedo::ALBEDO_LOSS_NARROWING.into()),
             ("GGX_ALBEDO_SCHLICK_NARROWING", albedo::ALBEDO_SCHLICK_NARROWING.into()),
         ],
+        "blinn_phong" => vec![
+            ("BLINN_PHONG_EXPONENT_MAX", blinn_phong::EXPONENT_MAX.into()),
+            ("BLINN_PHONG_COS_MIN", blinn_phong::COS_MIN.into()),
+            ("BLINN_PHONG_EXACT", f64::from(Variant::Exact as u32)),
+            ("BLINN_PHONG_APPROXIMATE", f64::from(Variant::Approximate as u32)),
+            ("BLINN_PHONG_UNNORMALIZED", f64::from(Variant::Unnormalized as u32)),
+            ("BLINN_PHONG_MICROFACET", f64::from(Variant::Microfacet as u32)),
+        ],
+        "layered" => vec![("LAYERED_GGX", f64::from(layered::GGX))],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![
             ("MICRO_NORMAL_NONE", f64::from(micro_normal::Kind::None as u32)),

@@ -7,7 +7,7 @@ use super::world::World;
 use crate::material::{Material, Reflectance};
 use crate::math::frame::Frame;
 use crate::surface::fresnel::Fresnel;
-use crate::surface::layered::Surface;
+use crate::surface::layered::{Lobe, Surface};
 use crate::surface::{dielectric, micro_normal};
 use crate::trace::Hit;
 
@@ -158,6 +158,7 @@ impl<'a> Point<'a> {
             base_color: *base_color,
             metallic: *metallic,
             alpha: *alpha,
+            lobe: Lobe::Ggx,
             fresnel,
             fresnel_mean,
             dielectric_f0: *dielectric_f0,

@@ -3,6 +3,7 @@
 //! Directions are unit vectors in a local frame with z = n: `wo` toward the viewer, `wi` toward the light, both away
 //! from the surface. `eval` is a BRDF without the cosine.
 
+pub mod blinn_phong;
 pub mod coat;
 pub mod dielectric;
 pub mod fresnel;
@@ -19,8 +20,16 @@ use glam::Vec3;
 use crate::leaf::Leaf;
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] =
-    &[&fresnel::WGSL, &ggx::WGSL, &lambert::WGSL, &dielectric::WGSL, &coat::WGSL, &layered::WGSL, &micro_normal::WGSL];
+pub static LEAVES: &[&Leaf] = &[
+    &fresnel::WGSL,
+    &ggx::WGSL,
+    &lambert::WGSL,
+    &blinn_phong::WGSL,
+    &dielectric::WGSL,
+    &coat::WGSL,
+    &layered::WGSL,
+    &micro_normal::WGSL,
+];
 
 /// A direction drawn from a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]

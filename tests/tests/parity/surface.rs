@@ -1,7 +1,7 @@
 //! A whole surface as four vectors, for the cases of layered and classical.
 
 use burnish_core::surface::ggx::Masking;
-use burnish_core::surface::layered::Surface;
+use burnish_core::surface::layered::{Lobe, Surface};
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use crate::curves::{self, Curves};
@@ -56,6 +56,7 @@ pub fn unpack(x: &[Vec4]) -> Surface<'static> {
         base_color: x[0].xyz(),
         metallic: x[0].w,
         alpha: x[1].xy(),
+        lobe: Lobe::Ggx,
         fresnel: &curve.fresnel,
         fresnel_mean: curve.mean,
         dielectric_f0: x[2].xyz(),

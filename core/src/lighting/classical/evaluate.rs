@@ -9,7 +9,7 @@ use crate::math::sampling;
 use crate::surface::fresnel;
 use crate::surface::ggx;
 use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, loss, loss_mean, schlick_ratio};
-use crate::surface::layered::Surface;
+use crate::surface::layered::{Lobe, Surface};
 use crate::surface::{coat, dielectric};
 
 /// What the method looks up. Directions are unit vectors in world space.
@@ -136,6 +136,7 @@ pub fn environment(
     let top = Surface {
         metallic: 0.0,
         alpha: Vec2::splat(s.coat_alpha),
+        lobe: Lobe::Ggx,
         dielectric_f0: Vec3::splat(coat::F0),
         dielectric_f90: 1.0,
         ..*s

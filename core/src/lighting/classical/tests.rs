@@ -6,7 +6,7 @@ use super::*;
 use crate::math::frame::Frame;
 use crate::scene::Environment;
 use crate::surface::ggx::albedo::schlick_ratio;
-use crate::surface::layered::Surface;
+use crate::surface::layered::{Lobe, Surface};
 
 const WHITE_METAL: Fresnel = Fresnel::Rescaled { f0: Vec3::ONE };
 
@@ -15,6 +15,7 @@ fn metal(fresnel: &Fresnel, alpha: Vec2) -> Surface<'_> {
         base_color: Vec3::ONE,
         metallic: 1.0,
         alpha,
+        lobe: Lobe::Ggx,
         fresnel_mean: fresnel.mean(),
         fresnel,
         dielectric_f0: Vec3::splat(0.04),

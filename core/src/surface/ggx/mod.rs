@@ -131,7 +131,7 @@ pub fn microfacet(wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
 }
 
 /// Half vector and its cosine with either direction; `None` where one is below the horizon or the two are opposite.
-fn half_vector(wo: Vec3, wi: Vec3) -> Option<(Vec3, f32)> {
+pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<(Vec3, f32)> {
     let h = wo + wi;
     let length2 = h.length_squared();
     let length = length2.sqrt();

@@ -1,10 +1,16 @@
 // The whole surface: metal and dielectric mixed, under a coat.
 
+const LAYERED_GGX: u32 = 0u;
+
 // A shaded point with its textures looked up. A value, never stored in a buffer.
 struct Surface {
     base_color: vec3f,
     metallic: f32,
+    // Of GGX; of a Blinn-Phong lobe the width that stands for it.
     alpha: vec2f,
+    // LAYERED_GGX or a variant of Blinn-Phong with its exponent.
+    lobe: u32,
+    exponent: f32,
     fresnel: Fresnel,
     fresnel_mean: vec3f,
     dielectric_f0: vec3f,
@@ -15,10 +21,32 @@ struct Surface {
     multiple_scattering: bool,
 }
 
+// The cosine at the half vector and the BRDF for F = 1.
+fn layered_facet(s: Surface, wo: vec3f, wi: vec3f) -> vec2f {
+    if s.lobe == LAYERED_GGX {
+        return ggx_microfacet(wo, wi, s.alpha, s.masking);
+    }
+    return blinn_phong_facet(wo, wi, s.exponent, s.lobe);
+}
+
+// True where the metal returns light that scattered more than once.
+fn layered_scatters_again(s: Surface) -> bool {
+    return s.multiple_scattering && s.lobe == LAYERED_GGX;
+}
+
+// The dielectric's base: what the reflection leaves, counted by the GGX albedo for every lobe; older shaders add it whole
+// and without 1 / pi.
+fn layered_matte(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
+    if s.lobe == BLINN_PHONG_UNNORMALIZED {
+        return select(vec3f(0.0), s.base_color, wo.z > 0.0 && wi.z > 0.0);
+    }
+    return dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
+}
+
 // What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share width and so the
 // microfacet term.
 fn layered_glossy(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
-    let facet = ggx_microfacet(wo, wi, s.alpha, s.masking);
+    let facet = layered_facet(s, wo, wi);
     if facet.y <= 0.0 {
         return vec3f(0.0);
     }
@@ -40,12 +68,11 @@ fn layered_reflectance(s: Surface, cos_theta: f32) -> vec3f {
 // What leaves in all directions: the matte base of the dielectric, and light that scattered more than once in the metal.
 fn layered_spread(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
     var value = vec3f(0.0);
-    if s.metallic > 0.0 && s.multiple_scattering {
+    if s.metallic > 0.0 && layered_scatters_again(s) {
         value += s.metallic * ggx_multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
     }
     if s.metallic < 1.0 {
-        value += (1.0 - s.metallic)
-            * dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
+        value += (1.0 - s.metallic) * layered_matte(s, wo, wi);
     }
     return value;
 }

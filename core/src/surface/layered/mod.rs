@@ -7,16 +7,60 @@ use glam::{Vec2, Vec3};
 
 use super::fresnel::{Fresnel, schlick};
 use super::ggx::{self, Masking};
-use super::{coat, dielectric};
+use super::{blinn_phong, coat, dielectric};
 use crate::leaf::Leaf;
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
     name: "layered",
     source: include_str!("layered.wgsl"),
-    needs: &[&dielectric::WGSL, &coat::WGSL],
+    needs: &[&dielectric::WGSL, &coat::WGSL, &blinn_phong::WGSL],
     externs: "",
 };
+
+/// [`Lobe::Ggx`] in shaders.
+pub const GGX: u32 = 0;
+
+/// How metal and dielectric reflect; the coat is always GGX.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Lobe {
+    /// Microfacets of [`Surface::alpha`].
+    #[default]
+    Ggx,
+    /// A power of the cosine: isotropic, scattered once.
+    BlinnPhong {
+        /// 0 to [`blinn_phong::EXPONENT_MAX`].
+        exponent: f32,
+        /// What stands before the power.
+        variant: blinn_phong::Variant,
+    },
+}
+
+impl Lobe {
+    /// Number in shaders, and the exponent.
+    pub fn numbers(self) -> (u32, f32) {
+        match self {
+            Lobe::Ggx => (GGX, 0.0),
+            Lobe::BlinnPhong { exponent, variant } => (variant as u32, exponent),
+        }
+    }
+
+    /// What [`Surface::alpha`] must be: `alpha` itself, or the width that stands for the exponent.
+    pub fn alpha(self, alpha: Vec2) -> Vec2 {
+        match self {
+            Lobe::Ggx => alpha,
+            Lobe::BlinnPhong { exponent, .. } => Vec2::splat(blinn_phong::alpha(exponent)),
+        }
+    }
+
+    /// The cosine at the half vector and the BRDF for F = 1, as [`ggx::microfacet`] and [`blinn_phong::facet`].
+    pub fn facet(self, wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
+        match self {
+            Lobe::Ggx => ggx::microfacet(wo, wi, alpha, masking),
+            Lobe::BlinnPhong { exponent, variant } => blinn_phong::facet(wo, wi, exponent, variant),
+        }
+    }
+}
 
 /// A shaded point with its textures looked up. Colours are linear Rec.709 in [0, 1].
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +69,11 @@ pub struct Surface<'a> {
     pub base_color: Vec3,
     /// 0 dielectric to 1 metal.
     pub metallic: f32,
-    /// GGX widths along local x and y of the base.
+    /// GGX widths along local x and y of the base; for other lobes those of [`Lobe::alpha`], by which reflection and
+    /// matte part share the light.
     pub alpha: Vec2,
+    /// How the base reflects.
+    pub lobe: Lobe,
     /// Reflectance curve of the metal.
     pub fresnel: &'a Fresnel,
     /// Its cosine-weighted mean, [`Fresnel::mean`].
@@ -45,10 +92,17 @@ pub struct Surface<'a> {
     pub multiple_scattering: bool,
 }
 
-/// What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share width and so the
-/// microfacet term. On a mirror this is the part that has no density.
+impl Surface<'_> {
+    /// True where the metal returns light that scattered more than once.
+    pub fn scatters_again(&self) -> bool {
+        self.multiple_scattering && self.lobe == Lobe::Ggx
+    }
+}
+
+/// What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share the lobe. On a mirror
+/// this is the part that has no density.
 pub fn glossy(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
-    let facet = ggx::microfacet(wo, wi, s.alpha, s.masking);
+    let facet = s.lobe.facet(wo, wi, s.alpha, s.masking);
     if facet.y > 0.0 { facet.y * reflectance(s, facet.x) } else { Vec3::ZERO }
 }
 
@@ -68,14 +122,24 @@ pub fn reflectance(s: &Surface, cos_theta: f32) -> Vec3 {
 /// that scattered more than once in the metal. BRDF without the cosine.
 pub fn spread(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
     let mut value = Vec3::ZERO;
-    if s.metallic > 0.0 && s.multiple_scattering {
+    if s.metallic > 0.0 && s.scatters_again() {
         value += s.metallic * ggx::multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
     }
     if s.metallic < 1.0 {
-        let base = dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
-        value += (1.0 - s.metallic) * base;
+        value += (1.0 - s.metallic) * matte(s, wo, wi);
     }
     value
+}
+
+/// The dielectric's base: what the reflection leaves, counted by the GGX albedo for every lobe; older shaders add it
+/// whole and without 1 / pi.
+fn matte(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
+    let above = wo.z > 0.0 && wi.z > 0.0;
+    match s.lobe {
+        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } if above => s.base_color,
+        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } => Vec3::ZERO,
+        _ => dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking),
+    }
 }
 
 /// Metal and dielectric below the coat, [`glossy`] and [`spread`]: BRDF without the cosine.

@@ -3,6 +3,7 @@
 //! One file per leaf holds its cases. A leaf without a case fails, and so does a function of a leaf that no case
 //! reaches.
 
+mod blinn_phong;
 mod classical;
 mod coat;
 mod curves;
@@ -43,6 +44,7 @@ fn cases() -> Vec<Case> {
     cases.extend(fresnel::cases());
     cases.extend(ggx::cases());
     cases.extend(lambert::cases());
+    cases.extend(blinn_phong::cases());
     cases.extend(dielectric::cases());
     cases.extend(coat::cases());
     cases.extend(layered::cases());

@@ -12,7 +12,9 @@ fn parity_surface(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> Surface {
     s.dielectric_f90 = c.w;
     s.coat = b.z;
     s.coat_alpha = b.w;
-    s.masking = u32(d.y);
-    s.multiple_scattering = d.z > 0.0;
+    s.masking = u32(d.y) / 2u;
+    s.multiple_scattering = u32(d.y) % 2u == 1u;
+    s.lobe = u32(d.z);
+    s.exponent = d.w;
     return s;
 }

@@ -125,6 +125,10 @@ fn blinn_phong_sample_wm(exponent: f32, u: vec2f) -> vec3f {
 
 // Direction of light, by reflection at such a half vector or by the cosine; not above the horizon where there is none.
 fn blinn_phong_sample_wi(wo: vec3f, exponent: f32, variant: u32, u: vec2f) -> vec3f {
+    let none = vec3f(0.0, 0.0, -1.0);
+    if wo.z <= 0.0 {
+        return none;
+    }
     let share = blinn_phong_cosine_share(exponent, variant);
     if u.y < share {
         return sampling_cosine_hemisphere(vec2f(u.x, u.y / share));
@@ -133,8 +137,8 @@ fn blinn_phong_sample_wi(wo: vec3f, exponent: f32, variant: u32, u: vec2f) -> ve
     let rest = min((u.y - share) / (1.0 - share), 0.99999994);
     let wm = blinn_phong_sample_wm(exponent, vec2f(u.x, rest));
     let toward = dot(wo, wm);
-    if wo.z <= 0.0 || toward <= 0.0 {
-        return vec3f(0.0, 0.0, -1.0);
+    if toward <= 0.0 {
+        return none;
     }
     return normalize(2.0 * toward * wm - wo);
 }

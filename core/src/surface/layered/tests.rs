@@ -86,7 +86,9 @@ fn under_a_power_of_the_cosine_nothing_returns_more_light_than_it_gets() {
         for (metallic, coat) in [(1.0, 0.7), (1.0, 0.0)] {
             for variant in [Variant::Exact, Variant::Microfacet] {
                 let surface = Surface { metallic, coat, ..powers(exponent, variant) };
-                for wo in views(0.3) {
+                // Between opposite grazing directions microfacets peak without bound, which the nodes miss.
+                let least = if variant == Variant::Exact { 0.0 } else { 0.1 };
+                for wo in views(0.3).filter(|wo| wo.z > least) {
                     let total = smooth_albedo(&polar, 96, |wi| response(&surface, wo, wi, wo, wi).x / wi.z);
                     assert!(total < 1.01, "{variant:?} {exponent} {metallic} {coat} {wo}: {total}");
                 }

@@ -17,6 +17,9 @@ mod sky;
 mod texture;
 mod world;
 
+#[cfg(test)]
+mod tests;
+
 use glam::{UVec2, Vec3};
 
 use crate::scene::Camera;

@@ -21,8 +21,7 @@ pub struct SkySample {
 
 /// An environment with the density by which it is sampled.
 ///
-/// What is below the mean radiance is left to the sampling of the BRDF (MIS compensation: Karlik et al. 2019, Multiple
-/// Importance Sampling Revisited). A map of one colour therefore has no density at all; see [`Sky::is_sampled`].
+/// What is below the mean radiance is left to the sampling of the BRDF (Karlik et al. 2019, MIS Compensation). A map of one colour therefore has no density at all; see [`Sky::is_sampled`].
 #[derive(Clone, Debug)]
 pub struct Sky {
     map: Arc<Environment>,

@@ -14,6 +14,7 @@ pub mod rgb;
 pub mod space;
 pub mod spectrum;
 pub mod tone;
+pub mod upsample;
 
 use crate::leaf::Leaf;
 

@@ -57,6 +57,12 @@ pub fn integrate(reflectance: impl Fn(f64) -> f64) -> DVec3 {
     WEIGHTS.iter().enumerate().map(|(i, &weight)| weight * reflectance(wavelength_nm(i))).sum()
 }
 
+/// Linear Rec.709 of a reflectance of 1 at one wavelength of the grid and 0 at all others, under D65: the summands of
+/// [`integrate`]. `index` is below [`COUNT`].
+pub fn weight(index: usize) -> DVec3 {
+    WEIGHTS[index]
+}
+
 /// Linear Rec.709 of a reflectance under another illuminant, given as relative power on the grid of [`CMF`], adapted to
 /// D65 by Bradford: what an observer sees who is used to that light. White stays (1, 1, 1). Two metals that [`integrate`]
 /// to one colour may differ here.

@@ -15,6 +15,7 @@ mod sampler;
 mod settings;
 mod sky;
 mod texture;
+mod waves;
 mod world;
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::bsdf::Bsdf;
 use super::lights::{End, LightSample};
 use super::point::Point;
 use super::sampler::PathSampler;
+use super::waves::Waves;
 use super::world::{Sight, World};
 use super::{FirstHit, PathSample};
 use crate::trace::{Ray, offset};
@@ -19,6 +20,7 @@ const SURVIVAL_MIN: f32 = 0.05;
 struct Path<'a> {
     world: &'a World,
     sampler: PathSampler,
+    waves: Waves,
     /// What light from here on is multiplied by.
     throughput: Vec3,
     /// Surfaces met so far.
@@ -37,11 +39,11 @@ struct Drawn {
 }
 
 /// Follows a path along a ray from the eye.
-pub(super) fn trace(world: &World, ray: Ray, sampler: PathSampler) -> PathSample {
+pub(super) fn trace(world: &World, ray: Ray, sampler: PathSampler, waves: Waves) -> PathSample {
     let mut path =
         Path { world, sampler, throughput: Vec3::ONE, surfaces: 0, radiance: Vec3::ZERO, clamped: Vec3::ZERO, rays: 0 };
     let first = path.follow(ray);
-    PathSample { radiance: path.radiance, clamped: path.clamped, first, rays: path.rays }
+    PathSample { radiance: waves.to_rgb(path.radiance), clamped: waves.to_rgb(path.clamped), first, rays: path.rays }
 }
 
 impl Path<'_> {
@@ -55,11 +57,11 @@ impl Path<'_> {
             self.rays += 1;
             let Some(hit) = world.closest(&ray, sight, salt) else {
                 let light = balance(drawn.pdf, || world.lights().sky_pdf(world.scene(), drawn.position, ray.direction));
-                self.add(light * world.lights().sky(ray.direction));
+                self.add(light * self.waves.of_rgb(world.lights().sky(ray.direction)));
                 return first;
             };
             let to_viewer = -ray.direction;
-            let point = Point::new(world, &hit, to_viewer);
+            let point = Point::new(world, &hit, to_viewer, self.waves);
             if !point.front && !world.is_two_sided(hit.instance) {
                 return first;
             }
@@ -70,7 +72,12 @@ impl Path<'_> {
             }
             if self.surfaces == 0 {
                 let (instance, material) = (hit.instance, point.material);
-                first = Some(FirstHit { normal: point.base.n, albedo: bsdf.albedo(), instance, material });
+                first = Some(FirstHit {
+                    normal: point.base.n,
+                    albedo: self.waves.to_rgb(bsdf.albedo()),
+                    instance,
+                    material,
+                });
             }
             if self.surfaces == world.options().bounces {
                 return first;
@@ -99,7 +106,7 @@ impl Path<'_> {
             return;
         };
         let (value, pdf) = bsdf.eval(sample.direction);
-        let mut light = value * sample.weight;
+        let mut light = value * self.waves.of_rgb(sample.weight);
         if sample.pdf.is_finite() {
             // The balance heuristic of Veach 1997, section 9.2.4.
             light *= sample.pdf / (sample.pdf + pdf);

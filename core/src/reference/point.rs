@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 use super::texture::{Coordinates, between, lookup};
+use super::waves::Waves;
 use super::world::World;
 use crate::material::{Material, Reflectance};
 use crate::math::frame::Frame;
@@ -38,8 +39,10 @@ struct Parts<'a> {
     base_color: Vec3,
     metallic: f32,
     alpha: Vec2,
+    /// Curve of the material's metal and its mean, unless `own` takes its place.
     preset: Option<(&'a Fresnel, Vec3)>,
-    rescaled: Fresnel,
+    /// Curve by the base colour, or of the metal at the wavelengths of the path.
+    own: (Fresnel, Vec3),
     dielectric_f0: Vec3,
     dielectric_f90: f32,
     coat: f32,
@@ -90,8 +93,8 @@ impl<'a> Triangle<'a> {
 }
 
 impl<'a> Point<'a> {
-    /// The point of a hit, seen from `to_viewer` (unit).
-    pub(super) fn new(world: &'a World, hit: &'a Hit, to_viewer: Vec3) -> Point<'a> {
+    /// The point of a hit, seen from `to_viewer` (unit), in the colours of a path.
+    pub(super) fn new(world: &'a World, hit: &'a Hit, to_viewer: Vec3, waves: Waves) -> Point<'a> {
         let triangle = Triangle::new(world, hit);
         let scene = world.scene();
         let mesh = world.mesh(hit.instance);
@@ -128,7 +131,7 @@ impl<'a> Point<'a> {
 
         let axis = anisotropy_axis(m, look(m.anisotropy_texture, false));
         let base = Frame::with_tangent(normal, handed.t * axis.x + handed.b * axis.y);
-        let parts = Parts::new(world, &triangle, m, &at);
+        let parts = Parts::new(world, &triangle, m, &at, waves);
         let texel = look(m.emission_texture, true).map_or(Vec3::ONE, Vec4::xyz);
         let mut point = Point {
             position,
@@ -136,7 +139,7 @@ impl<'a> Point<'a> {
             front,
             base,
             coat: Frame::new(coat_normal),
-            emission: m.emission * texel,
+            emission: waves.of_rgb(m.emission * texel),
             material: instance.material as u32,
             parts,
         };
@@ -149,11 +152,10 @@ impl<'a> Point<'a> {
 
     /// What is evaluated there.
     pub(super) fn surface(&self, world: &World) -> Surface<'_> {
-        let Parts { base_color, metallic, alpha, preset, rescaled, dielectric_f0, dielectric_f90, coat, coat_alpha } =
+        let Parts { base_color, metallic, alpha, preset, own, dielectric_f0, dielectric_f90, coat, coat_alpha } =
             &self.parts;
         let options = world.options();
-        let own = (rescaled, *base_color + (Vec3::ONE - *base_color) / 21.0);
-        let (fresnel, fresnel_mean) = preset.unwrap_or(own);
+        let (fresnel, fresnel_mean) = preset.unwrap_or((&own.0, own.1));
         Surface {
             base_color: *base_color,
             metallic: *metallic,
@@ -172,7 +174,7 @@ impl<'a> Point<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn new(world: &'a World, triangle: &Triangle, m: &'a Material, at: &Coordinates) -> Parts<'a> {
+    fn new(world: &'a World, triangle: &Triangle, m: &'a Material, at: &Coordinates, waves: Waves) -> Parts<'a> {
         let look = |texture, color| lookup(world.scene(), texture, at, color).unwrap_or(Vec4::ONE);
         let rough = look(m.metallic_roughness_texture, false);
         let color = m.base_color * triangle.color().xyz() * look(m.base_color_texture, true).xyz();
@@ -183,18 +185,30 @@ impl<'a> Parts<'a> {
         let weight = (m.specular * look(m.specular_texture, false).w).clamp(0.0, 1.0);
         let tint = m.specular_color * look(m.specular_color_texture, true).xyz();
         // An unlit surface shows its colour as it is.
-        let base_color = if m.unlit { color } else { color.clamp(Vec3::ZERO, Vec3::ONE) };
-        let preset = match &m.reflectance {
-            Reflectance::Preset { fresnel, .. } => Some((&**fresnel, world.fresnel_mean(triangle.hit.instance))),
-            Reflectance::BaseColor => None,
+        let base_color = waves.of_rgb(if m.unlit { color } else { color.clamp(Vec3::ZERO, Vec3::ONE) });
+        let mut own = (Fresnel::Rescaled { f0: base_color }, base_color + (Vec3::ONE - base_color) / 21.0);
+        let metal = world.metal(triangle.hit.instance);
+        let preset = match (&m.reflectance, metal, waves) {
+            (Reflectance::BaseColor, ..) => None,
+            (Reflectance::Preset { .. }, Some(metal), Waves::Three(places)) => {
+                own = metal.at(places);
+                None
+            }
+            (Reflectance::Preset { fresnel, .. }, None, Waves::Three(_)) => {
+                let f0 = waves.of_rgb(fresnel.f0());
+                own = (Fresnel::Rescaled { f0 }, f0 + (Vec3::ONE - f0) / 21.0);
+                None
+            }
+            (Reflectance::Preset { fresnel, .. }, ..) => Some((&**fresnel, world.fresnel_mean(triangle.hit.instance))),
         };
+        let is_metal = matches!(m.reflectance, Reflectance::Preset { .. });
         Parts {
             base_color,
-            metallic: if preset.is_some() { 1.0 } else { (m.metallic * rough.z).clamp(0.0, 1.0) },
+            metallic: if is_metal { 1.0 } else { (m.metallic * rough.z).clamp(0.0, 1.0) },
             alpha: Vec2::new(along, roughness * roughness),
             preset,
-            rescaled: Fresnel::Rescaled { f0: base_color },
-            dielectric_f0: dielectric::f0(m.ior, weight, tint),
+            own,
+            dielectric_f0: waves.of_rgb(dielectric::f0(m.ior, weight, tint)),
             dielectric_f90: weight,
             coat: (m.coat * look(m.coat_texture, false).x).clamp(0.0, 1.0),
             coat_alpha: coat_roughness * coat_roughness,

@@ -7,7 +7,9 @@ use glam::{Mat3A, UVec2, Vec2, Vec3};
 use super::lights::Lights;
 use super::point::Triangle;
 use super::sampler::PathSampler;
+use super::waves::{MetalWaves, Waves};
 use super::{Options, PathSample, View, path};
+use crate::material::preset::Preset;
 use crate::material::{AlphaMode, Material, Reflectance};
 use crate::math::frame::Frame;
 use crate::math::sampling::{pcg, unit};
@@ -25,6 +27,9 @@ pub struct World {
     instances: Vec<Placed>,
     /// Cosine-weighted mean reflectance of the metal of each material; zero where it has none.
     fresnel_means: Vec<Vec3>,
+    /// The metals at all wavelengths, by material; empty when colours are traced.
+    metals: Vec<Option<Arc<MetalWaves>>>,
+    has_waves: bool,
     /// Some surface lets light through.
     some_cut: bool,
     /// Some surface is not there from behind.
@@ -81,12 +86,31 @@ impl World {
             some_cut: instances.iter().any(|i| i.cut),
             some_one_sided: instances.iter().any(|i| !i.two_sided),
             fresnel_means: scene.materials.iter().map(mean).collect(),
+            metals: Vec::new(),
+            has_waves: false,
             scene: scene.clone(),
             accel,
             lights,
             options,
             instances,
         }
+    }
+
+    /// The same scene traced by wavelength: metals by their n and k, colours as smooth spectra, light as that of D65 times
+    /// its colour. `metal` finds presets by id; returned are the ids that it does not know, which reflect as the rescaled form of the colour of their F0.
+    pub fn by_wavelength(mut self, metal: impl Fn(&str) -> Option<Preset>) -> (World, Vec<String>) {
+        let mut unknown = Vec::new();
+        let mut find = |material: &Material| {
+            let Reflectance::Preset { id, .. } = &material.reflectance else { return None };
+            let found = metal(id).map(|metal| Arc::new(MetalWaves::new(&metal)));
+            if found.is_none() && !unknown.contains(id) {
+                unknown.push(id.clone());
+            }
+            found
+        };
+        self.metals = self.scene.materials.iter().map(&mut find).collect();
+        self.has_waves = true;
+        (self, unknown)
     }
 
     /// The scene.
@@ -102,11 +126,12 @@ impl World {
     /// Follows path number `index` through a pixel, which is counted from the top left.
     pub fn sample(&self, view: &View, pixel: UVec2, index: u32) -> PathSample {
         let mut sampler = PathSampler::new(view.seed, pixel, index);
-        let [x, y, ..] = sampler.next4();
+        let [x, y, z, _] = sampler.next4();
+        let waves = if self.has_waves { Waves::draw(z) } else { Waves::Rgb };
         let size = view.size.as_vec2();
         let start = view.camera.ray((pixel.as_vec2() + Vec2::new(x, y)) / size, size.x / size.y);
         let ray = Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY };
-        path::trace(self, ray, sampler)
+        path::trace(self, ray, sampler, waves)
     }
 
     /// The light of the scene.
@@ -152,6 +177,10 @@ impl World {
 
     pub(super) fn material(&self, instance: u32) -> &Material {
         &self.scene.materials[self.scene.instances[instance as usize].material]
+    }
+
+    pub(super) fn metal(&self, instance: u32) -> Option<&MetalWaves> {
+        self.metals.get(self.scene.instances[instance as usize].material)?.as_deref()
     }
 
     pub(super) fn fresnel_mean(&self, instance: u32) -> Vec3 {

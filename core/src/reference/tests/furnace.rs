@@ -110,3 +110,38 @@ fn a_ball_of_metal_sends_back_its_directional_albedo() {
         assert!((got / want - DVec3::ONE).abs().max_element() < 5e-3, "{roughness}: {got} instead of {want}");
     }
 }
+
+#[test]
+fn a_world_by_wavelength_shows_metals_and_colours_as_their_colour() {
+    let gold = preset::find("Au").unwrap();
+    let curve = Arc::new(gold.fresnel(Form::Spectral));
+    let metal = Material {
+        reflectance: Reflectance::Preset { id: "Au".into(), fresnel: curve.clone() },
+        roughness: 0.0,
+        double_sided: true,
+        ..Material::default()
+    };
+    let color = Vec3::new(0.8, 0.3, 0.1);
+    // A plane sees nothing of itself: what is seen is the mean curve, or the colour, under coloured light.
+    for (material, light) in [(metal, Vec3::ONE), (matte(color), Vec3::ONE), (even_metal(Vec3::ONE, 0.0), color)] {
+        let mut scene = scene([(shape::plane(40.0, 40.0), material.clone())]);
+        scene.environment = even_sky(light);
+        let scene = Arc::new(scene);
+        let view = view(Vec3::new(0.0, 0.0, 3.0), Vec3::ZERO, 8, 1);
+        let rgb = World::new(&scene, Options::default());
+        let (waves, unknown) = rgb.clone().by_wavelength(|id| preset::find(id).ok());
+        assert_eq!(
+            unknown.is_empty(),
+            !matches!(&material.reflectance, Reflectance::Preset { id, .. } if id == "even")
+        );
+        let trace_in = |world: &World| {
+            let mut film = Film::new(view.size);
+            assert_eq!(trace(world, &view, &mut film, 1024, &Control::default()), Pass::Whole);
+            mean(&film)
+        };
+        let (got, want) = (trace_in(&waves), trace_in(&rgb));
+        println!("{got:.4} for {want:.4}");
+        // The curve in RGB is clamped where the red of gold exceeds 1.
+        assert!((got.min(DVec3::ONE) - want).abs().max_element() < 0.01, "{got} {want}");
+    }
+}

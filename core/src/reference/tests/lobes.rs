@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::super::bsdf::Bsdf;
 use super::super::point::Point;
+use super::super::waves::Waves;
 use super::*;
 use crate::math::sampling::Random;
 use crate::math::statistics::{SphereGrid, sidak, sphere_chi_square};
@@ -37,7 +38,7 @@ fn directions_of_whole_surfaces_follow_their_density() {
             let wo = view.normalize();
             let ray = Ray { origin: wo, direction: -wo, t_max: f32::INFINITY };
             let hit = Accel::new(&scene).closest(&ray, |_| true).unwrap();
-            let point = Point::new(&world, &hit, wo);
+            let point = Point::new(&world, &hit, wo, Waves::Rgb);
             let bsdf = Bsdf::new(&world, &point, wo);
             let grid = match width < 0.1 {
                 true => SphereGrid::around(Vec3::new(-wo.x, -wo.y, wo.z), f64::from(width)),
@@ -60,7 +61,7 @@ fn the_weight_of_a_direction_is_response_over_density() {
         let wo = Vec3::new(0.5, 0.3, 0.7).normalize();
         let ray = Ray { origin: wo, direction: -wo, t_max: f32::INFINITY };
         let hit = Accel::new(&scene).closest(&ray, |_| true).unwrap();
-        let point = Point::new(&world, &hit, wo);
+        let point = Point::new(&world, &hit, wo, Waves::Rgb);
         let bsdf = Bsdf::new(&world, &point, wo);
         let mut random = Random::new(3);
         for _ in 0..1000 {

@@ -28,6 +28,8 @@ struct Emitter {
 pub(super) struct EmitterSample {
     /// World.
     pub point: Vec3,
+    /// Largest absolute coordinate of the corners.
+    pub extent: f32,
     /// Normal of the triangle there, unit.
     pub normal: Vec3,
     /// Toward the eye.
@@ -133,7 +135,8 @@ impl Emitters {
         let point = a * weights.x + b * weights.y + c * weights.z;
         let pdf = emitter.pdf(position, point)?;
         let radiance = emitter.radiance(scene, weights);
-        Some(EmitterSample { point, normal: emitter.normal, radiance, pdf })
+        let extent = a.abs().max(b.abs()).max(c.abs()).max_element();
+        Some(EmitterSample { point, extent, normal: emitter.normal, radiance, pdf })
     }
 
     /// Density per steradian with which [`Emitters::sample`] at `position` draws this point of a triangle; 0 where it never

@@ -38,8 +38,15 @@ pub(super) struct LightSample {
 pub(super) enum End {
     /// After metres, infinite for light from far away.
     Distance(f32),
-    /// At a surface with this normal.
-    Surface(Vec3, Vec3),
+    /// On a triangle.
+    Surface {
+        /// World.
+        point: Vec3,
+        /// Largest absolute coordinate of the corners.
+        extent: f32,
+        /// Of the triangle, unit.
+        normal: Vec3,
+    },
 }
 
 /// Chances of the three kinds at a point.
@@ -114,7 +121,7 @@ impl Lights {
         let sample = self.emitters.sample(scene, position, Vec3::new(choice, at.x, at.y))?;
         let pdf = chance * sample.pdf;
         let direction = (sample.point - position).normalize();
-        let end = End::Surface(sample.point, sample.normal);
+        let end = End::Surface { point: sample.point, extent: sample.extent, normal: sample.normal };
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
     }
 

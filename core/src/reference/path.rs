@@ -40,8 +40,16 @@ struct Drawn {
 
 /// Follows a path along a ray from the eye.
 pub(super) fn trace(world: &World, ray: Ray, sampler: PathSampler, waves: Waves) -> PathSample {
-    let mut path =
-        Path { world, sampler, throughput: Vec3::ONE, surfaces: 0, radiance: Vec3::ZERO, clamped: Vec3::ZERO, rays: 0 };
+    let mut path = Path {
+        world,
+        sampler,
+        waves,
+        throughput: Vec3::ONE,
+        surfaces: 0,
+        radiance: Vec3::ZERO,
+        clamped: Vec3::ZERO,
+        rays: 0,
+    };
     let first = path.follow(ray);
     PathSample { radiance: waves.to_rgb(path.radiance), clamped: waves.to_rgb(path.clamped), first, rays: path.rays }
 }
@@ -93,7 +101,7 @@ impl Path<'_> {
                 return first;
             }
             drawn = Drawn { position: point.position, pdf: sample.pdf };
-            let origin = offset(point.position, point.geometric, sample.wi);
+            let origin = offset(point.position, point.extent, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
         }
     }
@@ -163,12 +171,12 @@ fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
 }
 
 fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
-    let origin = offset(point.position, point.geometric, sample.direction);
+    let origin = offset(point.position, point.extent, point.geometric, sample.direction);
     match sample.end {
         // A lamp that lies on a surface is not hidden by it.
         End::Distance(distance) => Ray { origin, direction: sample.direction, t_max: distance * (1.0 - 1e-4) },
-        End::Surface(end, normal) => {
-            let end = offset(end, normal, -sample.direction);
+        End::Surface { point: end, extent, normal } => {
+            let end = offset(end, extent, normal, -sample.direction);
             let toward = end - origin;
             let t_max = toward.length();
             Ray { origin, direction: toward / t_max, t_max }

@@ -17,6 +17,8 @@ use crate::trace::Hit;
 pub(super) struct Point<'a> {
     /// World, metres.
     pub position: Vec3,
+    /// Largest absolute coordinate of the corners of the triangle, metres.
+    pub extent: f32,
     /// Normal of the triangle on the side that is looked at, unit.
     pub geometric: Vec3,
     /// Seen from the side on which corners run counter-clockwise.
@@ -104,6 +106,7 @@ impl<'a> Point<'a> {
 
         let [a, b, c] = corners.map(|corner| instance.world_from_local.transform_point3(mesh.positions[corner]));
         let position = a * weights.x + b * weights.y + c * weights.z;
+        let extent = a.abs().max(b.abs()).max(c.abs()).max_element();
         let outward = triangle.normal();
         let front = outward.dot(to_viewer) >= 0.0;
         let side = if front { 1.0 } else { -1.0 };
@@ -135,6 +138,7 @@ impl<'a> Point<'a> {
         let texel = look(m.emission_texture, true).map_or(Vec3::ONE, Vec4::xyz);
         let mut point = Point {
             position,
+            extent,
             geometric,
             front,
             base,

@@ -6,6 +6,7 @@
 
 pub mod color;
 pub mod document;
+pub mod export;
 pub mod file;
 pub mod import;
 pub mod job;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod doctor;
+mod export;
 mod fit;
 mod fresnel_balls;
 mod fresnel_report;
@@ -26,6 +27,8 @@ use crate::failure::{Exit, Failure};
 pub enum Command {
     /// Render a scene to a picture
     Render(render::Args),
+    /// Write a scene for another renderer, with a report of what that cannot hold
+    Export(export::Args),
     /// List what a scene consists of
     Info(info::Args),
     /// List the metal presets, or the errors of their Fresnel forms
@@ -52,6 +55,7 @@ impl Command {
     pub fn run(self, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
         match self {
             Command::Render(args) => render::run(args, out, err),
+            Command::Export(args) => export::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
             Command::Fit(args) => fit::run(args, out),

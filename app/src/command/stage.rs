@@ -51,7 +51,6 @@ pub enum Forms {
     /// Those of `--metal`; the materials of a document keep their own.
     OfMaterials,
     /// All.
-    #[allow(dead_code, reason = "for what traces paths, which follows")]
     OfAll,
 }
 
@@ -65,7 +64,6 @@ pub struct Staged {
     /// The document that the scene came from.
     pub document: Option<Document>,
     /// The presets of `--metal`, by id.
-    #[allow(dead_code, reason = "for exports, which follow")]
     pub metals: BTreeMap<String, Preset>,
 }
 

@@ -2,6 +2,7 @@
 
 mod comparing;
 mod documents;
+mod exporting;
 mod fitting;
 mod forms;
 mod rendering;
@@ -47,6 +48,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a reader that goes away early is no failure", &[], a_closed_pipe),
         trial("info describes a document as it was edited", &[], documents::info_describes_a_document),
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
+        trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
         trial("a full disk is exit code 4", &[], a_full_disk),
         trial("a table of n and k becomes a preset", &[], fitting::a_table_becomes_a_preset_that_renders),
         trial("a preset is fitted anew into its own file", &[], fitting::a_preset_is_fitted_anew_into_its_own_file),

@@ -127,6 +127,11 @@ pub fn readme_examples_run() {
         for arg in args.iter_mut().filter(|arg| arg.ends_with(".burnish")) {
             *arg = text(&repository().join(&*arg)).into();
         }
+        if args[0] == "export" {
+            // A folder has no ending to know it by.
+            let out = args.iter().position(|arg| arg == "--out").expect("a folder to write into") + 1;
+            args[out] = text(&folder.join(&args[out])).into();
+        }
         if args[0] == "snapshot" {
             args.extend(["--size".into(), "320x200".into()]);
         }

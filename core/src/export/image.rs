@@ -1,0 +1,36 @@
+//! Pictures of an export: channels of 32-bit floats as OpenEXR, 8-bit texels as PNG.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use png::{BitDepth, ColorType, Encoder};
+
+use crate::file::FileError;
+
+/// An OpenEXR of named channels, each of `width * height` numbers. `name` is for messages.
+pub fn exr(name: &str, width: u32, height: u32, channels: Vec<(&str, Vec<f32>)>) -> Result<Vec<u8>, FileError> {
+    let channel = |(name, values): (&str, Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values));
+    let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
+    let size = (width as usize, height as usize);
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| refused(name, &e))?;
+    Ok(bytes.into_inner())
+}
+
+/// A PNG of 8-bit RGB texels.
+pub fn png(name: &str, width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header().map_err(|e| refused(name, &e))?;
+    writer.write_image_data(rgb).map_err(|e| refused(name, &e))?;
+    writer.finish().map_err(|e| refused(name, &e))?;
+    Ok(bytes)
+}
+
+fn refused(name: &str, error: &dyn std::error::Error) -> FileError {
+    FileError::new(Path::new(name), format!("cannot be encoded ({error})"), "report the scene")
+}

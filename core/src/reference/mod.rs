@@ -27,7 +27,7 @@ use crate::scene::Camera;
 
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use passes::{Control, Pass, preview, trace, trace_with};
-pub use settings::{Options, PARAMS};
+pub use settings::{Options, PARAMS, is_spectral};
 pub use world::World;
 
 /// Id of the method, as documents name it.

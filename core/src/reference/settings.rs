@@ -49,6 +49,15 @@ pub const PARAMS: &[ParamSpec] = &[
         help: "Form in which all metal presets are traced; spectral is the truth.",
         affects: Affects::Prepare,
     },
+    ParamSpec {
+        key: "spectral",
+        label: "Wavelengths",
+        unit: "",
+        kind: ParamKind::Toggle { default: false },
+        help: "Traces wavelengths instead of red, green and blue: metals by their n and k, colours as smooth spectra, \
+               light as that of D65 times its colour. Noisier; what several bounces do to a spectrum is kept.",
+        affects: Affects::Prepare,
+    },
 ];
 
 /// Place of `spectral` among [`FormChoice::IDS`].
@@ -77,6 +86,11 @@ impl Default for Options {
     fn default() -> Options {
         Options::new(&Settings::new(PARAMS))
     }
+}
+
+/// True where settings made of [`PARAMS`] ask for wavelengths: see [`World::by_wavelength`](super::World::by_wavelength).
+pub fn is_spectral(settings: &Settings) -> bool {
+    settings.get("spectral") == Some(ParamValue::Toggle(true))
 }
 
 impl Options {

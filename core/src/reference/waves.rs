@@ -7,7 +7,7 @@
 
 use std::sync::LazyLock;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::color::observer::COUNT;
 use crate::color::rgb;
@@ -104,6 +104,8 @@ impl MetalWaves {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::material::preset;
     use crate::math::sampling::radical_inverse;

@@ -26,6 +26,7 @@ pub(super) struct Bsdf<'a> {
     coat_wo: Vec3,
     /// What passes the coat toward the viewer.
     passed_o: f32,
+    spread: layered::Spread,
     base_is_mirror: bool,
     coat_is_mirror: bool,
     chances: Chances,
@@ -60,9 +61,10 @@ impl<'a> Bsdf<'a> {
         let passed_o = if s.coat > 0.0 { coat::transmission(coat_wo, s.coat_alpha, s.coat, s.masking) } else { 1.0 };
         let base_is_mirror = ggx::is_mirror(s.alpha);
         let coat_is_mirror = s.coat_alpha < ggx::ALPHA_MIN;
+        let spread = layered::Spread::new(s, wo);
         let chances = Chances::new(s, wo, passed_o, base_is_mirror);
         let (base, coat, geometric) = (point.base, point.coat, point.geometric);
-        Bsdf { surface, base, coat, geometric, wo, coat_wo, passed_o, base_is_mirror, coat_is_mirror, chances }
+        Bsdf { surface, base, coat, geometric, wo, coat_wo, passed_o, spread, base_is_mirror, coat_is_mirror, chances }
     }
 
     /// True where light from a lamp can be seen other than as its mirror image.
@@ -92,7 +94,7 @@ impl<'a> Bsdf<'a> {
         let local = self.base.to_local(wi);
         let (mut value, mut pdf) = (Vec3::ZERO, 0.0);
         if local.z > 0.0 {
-            value = layered::spread(s, self.wo, local);
+            value = self.spread.eval(s, local);
             pdf = chances.spread * lambert::pdf(local);
             if !self.base_is_mirror {
                 value += layered::glossy(s, self.wo, local);
@@ -181,7 +183,7 @@ fn takes(s: &Surface, wo: Vec3, mirror: bool) -> (Vec3, Vec3) {
     let lost = if mirror { 0.0 } else { loss(wo, s.alpha, s.masking) };
     let glossy = (1.0 - lost) * layered::reflectance(s, wo.z);
     let mut spread = Vec3::ZERO;
-    if s.metallic > 0.0 && s.multiple_scattering {
+    if s.metallic > 0.0 && s.scatters_again() {
         spread += s.metallic * lost * ggx::bounces(s.fresnel_mean, loss_mean(s.alpha, s.masking));
     }
     if s.metallic < 1.0 {

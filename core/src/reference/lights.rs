@@ -93,12 +93,8 @@ impl Lights {
         if u.z < kinds.sky {
             let sample = self.sky.as_ref()?.sample(at)?;
             let (direction, pdf) = (sample.direction, kinds.sky * sample.pdf);
-            return Some(LightSample {
-                direction,
-                end: End::Distance(f32::INFINITY),
-                weight: self.sky(direction) / pdf,
-                pdf,
-            });
+            let weight = sample.radiance / pdf;
+            return Some(LightSample { direction, end: End::Distance(f32::INFINITY), weight, pdf });
         }
         let rest = u.z - kinds.sky;
         if rest < kinds.emitters {
@@ -125,9 +121,11 @@ impl Lights {
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
     }
 
-    /// Density with which [`Lights::sample`] at `position` draws a direction in which only the sky is.
-    pub(super) fn sky_pdf(&self, scene: &Scene, position: Vec3, direction: Vec3) -> f32 {
-        self.sky.as_ref().map_or(0.0, |sky| self.kinds(scene, position).sky * sky.pdf(direction))
+    /// Radiance of the sky, and the density with which [`Lights::sample`] at `position` draws that direction.
+    pub(super) fn look(&self, scene: &Scene, position: Vec3, direction: Vec3) -> (Vec3, f32) {
+        let Some(sky) = &self.sky else { return (Vec3::ZERO, 0.0) };
+        let (radiance, pdf) = sky.look(direction);
+        (radiance, if pdf > 0.0 { pdf * self.kinds(scene, position).sky } else { 0.0 })
     }
 
     /// Density with which [`Lights::sample`] at `position` draws a point of a glowing triangle.

@@ -64,8 +64,14 @@ impl Path<'_> {
             let salt = self.sampler.salt().wrapping_add(self.surfaces);
             self.rays += 1;
             let Some(hit) = world.closest(&ray, sight, salt) else {
-                let light = balance(drawn.pdf, || world.lights().sky_pdf(world.scene(), drawn.position, ray.direction));
-                self.add(light * self.waves.of_rgb(world.lights().sky(ray.direction)));
+                let light = match drawn.pdf.is_finite() {
+                    true => {
+                        let (light, pdf) = world.lights().look(world.scene(), drawn.position, ray.direction);
+                        light * balance(drawn.pdf, || pdf)
+                    }
+                    false => world.lights().sky(ray.direction),
+                };
+                self.add(self.waves.of_rgb(light));
                 return first;
             };
             let to_viewer = -ray.direction;

@@ -17,6 +17,8 @@ pub struct SkySample {
     pub direction: Vec3,
     /// Density per steradian, above 0.
     pub pdf: f32,
+    /// From there, strength included.
+    pub radiance: Vec3,
 }
 
 /// An environment with the density by which it is sampled.
@@ -76,17 +78,23 @@ impl Sky {
 
     /// Density of [`Sky::sample`] per steradian; 0 where the map is not sampled.
     pub fn pdf(&self, direction: Vec3) -> f32 {
+        self.look(direction).1
+    }
+
+    /// [`Sky::radiance`] and [`Sky::pdf`].
+    pub fn look(&self, direction: Vec3) -> (Vec3, f32) {
+        let uv = self.map.uv_from_direction(direction);
+        let radiance = self.map.radiance_at(uv);
         if !self.is_sampled() {
-            return 0.0;
+            return (radiance, 0.0);
         }
         let Tables { width, height, edges, .. } = &*self.tables;
         let (w, h) = (*width, *height);
-        let uv = self.map.uv_from_direction(direction);
         let x = uv.x * w as f32 - 0.5;
         let i = (x.floor() as i64).rem_euclid(w as i64) as usize;
         let j = ((uv.y * h as f32 + 0.5) as usize).min(h);
         let t = (edges[j] - f64::from(direction.y)) / (edges[j] - edges[j + 1]);
-        self.tables.cell_pdf(i, j, Vec2::new(x - x.floor(), t.clamp(0.0, 1.0) as f32))
+        (radiance, self.tables.cell_pdf(i, j, Vec2::new(x - x.floor(), t.clamp(0.0, 1.0) as f32)))
     }
 
     /// A direction; `u` in `[0, 1)^2`. `None` where the map is not sampled.
@@ -111,8 +119,11 @@ impl Sky {
         let s = linear(lerp(a, c, t), lerp(b, d, t), inside.x);
         let pdf = self.tables.cell_pdf(i, j, Vec2::new(s, t));
         let cos_theta = edges[j] + (edges[j + 1] - edges[j]) * f64::from(t);
-        let direction = self.direction(i as f32 + 0.5 + s, cos_theta);
-        (pdf > 0.0 && pdf.is_finite()).then_some(SkySample { direction, pdf })
+        let column = i as f32 + 0.5 + s;
+        let direction = self.direction(column, cos_theta);
+        let v = cos_theta.acos() * std::f64::consts::FRAC_1_PI;
+        let radiance = self.map.radiance_at(Vec2::new(column / w as f32, v as f32));
+        (pdf > 0.0 && pdf.is_finite()).then_some(SkySample { direction, pdf, radiance })
     }
 
     /// World direction of a column (in texels) and a cosine of the polar angle.
@@ -276,7 +287,8 @@ mod tests {
             let mut apart = 0;
             for _ in 0..10_000 {
                 let Some(sample) = sky.sample(random.point2()) else { continue };
-                let pdf = sky.pdf(sample.direction);
+                let (radiance, pdf) = sky.look(sample.direction);
+                apart += u32::from((radiance - sample.radiance).length() > 2e-3 * (radiance.length() + 1e-3));
                 // Rounding of angles moves points across a cell's edge now and then.
                 apart += u32::from((pdf - sample.pdf).abs() > 2e-3 * (pdf + sample.pdf));
             }

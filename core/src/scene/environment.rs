@@ -32,7 +32,11 @@ impl Environment {
 
     /// Radiance from a world direction, strength included: bilinear, wrapping around, stopping at the poles.
     pub fn radiance(&self, world: Vec3) -> Vec3 {
-        let uv = self.uv_from_direction(world);
+        self.radiance_at(self.uv_from_direction(world))
+    }
+
+    /// [`Environment::radiance`] of a point of the map, [0, 1]^2 from the top left.
+    pub fn radiance_at(&self, uv: Vec2) -> Vec3 {
         let p = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
         let low = p.floor();
         let f = p - low;

@@ -29,6 +29,9 @@ pub fn f0(ior: f32, specular: f32, specular_color: Vec3) -> Vec3 {
 
 /// Share of the light from `w` that the reflection takes: its directional albedo, in [0, 1].
 pub fn albedo(w: Vec3, alpha: Vec2, f0: f32, f90: f32, masking: Masking) -> f32 {
+    if f0 == 0.0 && f90 == 0.0 {
+        return 0.0;
+    }
     (1.0 - loss(w, alpha, masking)) * (f0 + (f90 - f0) * schlick_ratio(w, alpha, masking))
 }
 
@@ -46,12 +49,22 @@ pub fn base(wo: Vec3, wi: Vec3, alpha: Vec2, f0: Vec3, f90: f32, base_color: Vec
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Vec3::ZERO;
     }
-    let strongest = f0.max_element();
-    let left_o = 1.0 - albedo(wo, alpha, strongest, f90, masking);
-    let left_i = 1.0 - albedo(wi, alpha, strongest, f90, masking);
-    let left_mean = 1.0 - albedo_mean(alpha, strongest, f90, masking);
+    base_toward(wo, alpha, f0, f90, base_color, masking) * left(wi, alpha, f0, f90, masking)
+}
+
+/// [`base`] over [`left`] of the light: what depends on one side alone, for those who evaluate many lights.
+pub fn base_toward(wo: Vec3, alpha: Vec2, f0: Vec3, f90: f32, base_color: Vec3, masking: Masking) -> Vec3 {
+    let left_mean = match f90 == 0.0 && f0 == Vec3::ZERO {
+        true => 1.0,
+        false => 1.0 - albedo_mean(alpha, f0.max_element(), f90, masking),
+    };
     // The floor acts only where f0 and f90 are one and nothing is left to share out.
-    lambert::eval(base_color) * (left_o * left_i / left_mean.max(1e-6))
+    lambert::eval(base_color) * (left(wo, alpha, f0, f90, masking) / left_mean.max(1e-6))
+}
+
+/// Share of the light from `w` that the reflection leaves to the base.
+pub fn left(w: Vec3, alpha: Vec2, f0: Vec3, f90: f32, masking: Masking) -> f32 {
+    1.0 - albedo(w, alpha, f0.max_element(), f90, masking)
 }
 
 /// Reflection and base: BRDF without the cosine. `f0` and `f90` in [0, 1].

@@ -26,7 +26,7 @@ use crate::leaf::Leaf;
 use crate::math::bounded;
 
 pub use conductor::Conductor;
-pub use multiple::{bounces, multiple};
+pub use multiple::{bounces, multiple, multiple_toward};
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {

@@ -16,9 +16,14 @@ pub fn multiple(wo: Vec3, wi: Vec3, alpha: Vec2, fresnel_mean: Vec3, masking: Ma
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Vec3::ZERO;
     }
+    multiple_toward(wo, alpha, fresnel_mean, masking) * loss(wi, alpha, masking)
+}
+
+/// [`multiple`] over what single scattering loses of the light, [`loss`]: what depends on one side alone, for those who
+/// evaluate many lights.
+pub fn multiple_toward(wo: Vec3, alpha: Vec2, fresnel_mean: Vec3, masking: Masking) -> Vec3 {
     let mean = loss_mean(alpha, masking);
-    let lost = loss(wo, alpha, masking) * loss(wi, alpha, masking);
-    bounces(fresnel_mean, mean) * (lost * FRAC_1_PI / mean)
+    bounces(fresnel_mean, mean) * (loss(wo, alpha, masking) * FRAC_1_PI / mean)
 }
 
 /// What all bounces after the first keep of white light, `F_ms`; `loss_mean` is that of the surface,

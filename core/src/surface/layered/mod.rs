@@ -6,7 +6,7 @@ mod tests;
 use glam::{Vec2, Vec3};
 
 use super::fresnel::{Fresnel, schlick};
-use super::ggx::{self, Masking};
+use super::ggx::{self, Masking, albedo};
 use super::{blinn_phong, coat, dielectric};
 use crate::leaf::Leaf;
 
@@ -93,6 +93,12 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
+    /// True where the base of the dielectric is added as older shaders did: all of it, and without 1 / pi. Else it gets what
+    /// the reflection leaves, counted by the GGX albedo for every lobe.
+    fn adds_base_whole(&self) -> bool {
+        matches!(self.lobe, Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. })
+    }
+
     /// True where the metal returns light that scattered more than once.
     pub fn scatters_again(&self) -> bool {
         self.multiple_scattering && self.lobe == Lobe::Ggx
@@ -121,24 +127,54 @@ pub fn reflectance(s: &Surface, cos_theta: f32) -> Vec3 {
 /// What leaves in all directions after it went on below the first reflection: the matte base of the dielectric and light
 /// that scattered more than once in the metal. BRDF without the cosine.
 pub fn spread(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
-    let mut value = Vec3::ZERO;
-    if s.metallic > 0.0 && s.scatters_again() {
-        value += s.metallic * ggx::multiple(wo, wi, s.alpha, s.fresnel_mean, s.masking);
-    }
-    if s.metallic < 1.0 {
-        value += (1.0 - s.metallic) * matte(s, wo, wi);
-    }
-    value
+    if wo.z > 0.0 { Spread::new(s, wo).eval(s, wi) } else { Vec3::ZERO }
 }
 
-/// The dielectric's base: what the reflection leaves, counted by the GGX albedo for every lobe; older shaders add it
-/// whole and without 1 / pi.
-fn matte(s: &Surface, wo: Vec3, wi: Vec3) -> Vec3 {
-    let above = wo.z > 0.0 && wi.z > 0.0;
-    match s.lobe {
-        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } if above => s.base_color,
-        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } => Vec3::ZERO,
-        _ => dielectric::base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking),
+/// [`spread`] toward one direction, for many lights.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    /// Over what single scattering loses of the light.
+    metal: Vec3,
+    /// Over what the reflection of the dielectric leaves of the light.
+    matte: Vec3,
+}
+
+impl Spread {
+    /// Toward `wo`, which is above the horizon.
+    pub fn new(s: &Surface, wo: Vec3) -> Spread {
+        let (mut metal, mut matte) = (Vec3::ZERO, Vec3::ZERO);
+        if s.metallic > 0.0 && s.scatters_again() {
+            metal = s.metallic * ggx::multiple_toward(wo, s.alpha, s.fresnel_mean, s.masking);
+        }
+        if s.metallic < 1.0 {
+            let toward = match s.adds_base_whole() {
+                true => s.base_color,
+                false => {
+                    dielectric::base_toward(wo, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking)
+                }
+            };
+            matte = (1.0 - s.metallic) * toward;
+        }
+        Spread { metal, matte }
+    }
+
+    /// From `wi`.
+    pub fn eval(&self, s: &Surface, wi: Vec3) -> Vec3 {
+        if wi.z <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut value = Vec3::ZERO;
+        if self.metal != Vec3::ZERO {
+            value += self.metal * albedo::loss(wi, s.alpha, s.masking);
+        }
+        if self.matte != Vec3::ZERO {
+            let left = match s.adds_base_whole() {
+                true => 1.0,
+                false => dielectric::left(wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.masking),
+            };
+            value += self.matte * left;
+        }
+        value
     }
 }
 

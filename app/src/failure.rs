@@ -17,6 +17,8 @@ pub enum Exit {
     Input = 3,
     /// The machine lacks something: an adapter, memory, room on the disk.
     Resources = 4,
+    /// The user ended it before it was done.
+    Cancelled = 5,
 }
 
 /// A failure with its messages: each one line that says what, why, and what to do.

@@ -5,6 +5,7 @@
 
 mod command;
 mod failure;
+pub mod interrupt;
 mod report;
 mod source;
 mod value;
@@ -28,9 +29,9 @@ struct Cli {
     open: command::open::Args,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 ok, 1 difference, 2 usage, 3 bad input, 4 resources";
+const EXIT_CODES: &str = "Exit codes: 0 ok, 1 difference, 2 usage, 3 bad input, 4 resources, 5 cancelled";
 
-/// Runs one command and returns its exit code: 0 ok, 1 difference, 2 usage, 3 bad input, 4 resources.
+/// Runs one command and returns its exit code: 0 ok, 1 difference, 2 usage, 3 bad input, 4 resources, 5 cancelled.
 ///
 /// `args` are the arguments after the program's name. Results go to `out`, notices and the one-line message of a
 /// failure to `err`. A reader that closes `out` early ends the command quietly.

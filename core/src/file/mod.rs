@@ -1,9 +1,10 @@
-//! Files: safe writing, bounded reading, pictures.
+//! Files: safe writing, bounded reading, pictures, arrays of numbers.
 //!
 //! A write leaves the whole old or the whole new file, whatever happens in between. A read knows its limit before it
 //! takes memory. Every message names the file, the reason and what to do.
 
 mod atomic;
+mod container;
 mod exr;
 mod picture;
 mod png;
@@ -11,6 +12,8 @@ mod png;
 pub(crate) mod testing;
 
 pub use atomic::{read_bounded, write_atomic};
+pub use container::{Array, Container, Element, Kind};
+pub use exr::{Attribute, Channel, Samples, write_exr_with};
 pub use picture::{Encoding, MAX_PIXELS, PictureFormat, read_picture, write_exr, write_picture, write_png};
 
 use std::path::{Path, PathBuf};

@@ -118,7 +118,7 @@ fn content(bytes: &[u8]) -> &'static str {
 }
 
 /// Refuses a picture that no file can hold.
-fn check_whole(picture: &Picture, path: &Path) -> Result<(), FileError> {
+pub(super) fn check_whole(picture: &Picture, path: &Path) -> Result<(), FileError> {
     if picture.texels.is_empty() || !picture.is_whole() {
         let Picture { width, height, texels } = picture;
         let reason = format!("the picture is {width} x {height} with {} pixels", texels.len());

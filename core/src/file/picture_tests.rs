@@ -168,3 +168,50 @@ fn names_and_pictures_that_cannot_be_written_are_refused() {
     assert!(write_png(&Picture::default(), &folder.join("b.png"), ToneMap::None, 0.0).is_err());
     assert_eq!(folder.names(), ["A.PNG"]);
 }
+
+#[test]
+fn channels_and_attributes_stand_beside_the_colours_and_the_bytes_are_the_same_each_time() {
+    use crate::file::{Attribute, Channel, Samples, write_exr_with};
+    use ::exr::meta::attribute::AttributeValue;
+    use ::exr::prelude::*;
+    let folder = Folder::new();
+    let path = folder.join("a.exr");
+    let picture = gradient(9, 20);
+    let ids: Vec<u32> = (0..180).map(|i| if i == 0 { u32::MAX } else { i }).collect();
+    let channels = || {
+        let depth = Samples::Float((0..180).map(|i| i as f32 * 0.1).collect());
+        vec![
+            Channel { name: "N.X", samples: depth },
+            Channel { name: "id.instance", samples: Samples::Whole(ids.clone()) },
+        ]
+    };
+    let attributes = [
+        ("burnish.samples", Attribute::Whole(64)),
+        ("burnish.error", Attribute::Number(0.1)),
+        ("burnish.seed", Attribute::Number(4294967295.0)),
+        ("burnish.masking", Attribute::Text("größer ∞".into())),
+        ("a", Attribute::Whole(-1)),
+    ];
+    write_exr_with(&picture, channels(), &attributes, &path).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    for _ in 0..8 {
+        write_exr_with(&picture, channels(), &attributes, &path).unwrap();
+        assert!(std::fs::read(&path).unwrap() == bytes);
+    }
+    let (read, encoding) = read_picture(&path).unwrap();
+    assert!(read == picture && encoding == super::Encoding::Linear);
+
+    let image = read_all_flat_layers_from_file(&path).unwrap();
+    let layer = &image.layer_data[0];
+    let channel = |name: &str| &layer.channel_data.list.iter().find(|c| c.name == *name).unwrap().sample_data;
+    assert_eq!(*channel("id.instance"), FlatSamples::U32(ids.clone()));
+    assert!(matches!(channel("N.X"), FlatSamples::F32(values) if values[7] == 7.0 * 0.1));
+    let other = |name: &str| layer.attributes.other.get(name.as_bytes()).cloned();
+    assert_eq!(other("burnish.samples"), Some(AttributeValue::I32(64)));
+    assert_eq!(other("burnish.error"), Some(AttributeValue::F64(0.1)));
+    assert_eq!(other("burnish.masking"), Some(AttributeValue::Text(Text::from("größer ?"))));
+
+    let short = vec![Channel { name: "Z", samples: Samples::Float(vec![0.0]) }];
+    let error = write_exr_with(&picture, short, &[], &path).unwrap_err().to_string();
+    assert!(error.contains("channel `Z`"), "{error}");
+}

@@ -4,10 +4,13 @@
 //! seed, pixel and number of the sample, so that any number of threads gives the same picture.
 
 mod bsdf;
+pub mod checkpoint;
 mod emitters;
 mod film;
 mod lamps;
+mod layers;
 mod lights;
+mod pacing;
 mod passes;
 mod path;
 mod point;
@@ -26,6 +29,7 @@ use glam::{UVec2, Vec3};
 use crate::scene::Camera;
 
 pub use film::{Film, NOTHING, Pixel, Rejected};
+pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, trace, trace_with};
 pub use settings::{Options, PARAMS, is_spectral};
 pub use world::World;

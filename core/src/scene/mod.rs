@@ -2,6 +2,7 @@
 
 mod camera;
 mod environment;
+pub mod fingerprint;
 pub mod gallery;
 mod pick;
 mod validate;

@@ -13,7 +13,7 @@ use super::rendering::{grey_environment, render};
 use super::{INPUT, burnish, text, triangle};
 
 /// A gold triangle under a grey sky, seen from straight in front and two stops brighter.
-fn document(folder: &Path) -> (Document, PathBuf) {
+pub fn document(folder: &Path) -> (Document, PathBuf) {
     let mut document = document::open(text(&triangle(folder))).expect("a model").document;
     let gold = preset::find("Au").expect("gold");
     document.assign_preset(0, &gold, Assigned::KeepTextures);

@@ -5,6 +5,7 @@ mod documents;
 mod exporting;
 mod fitting;
 mod forms;
+mod reference;
 mod rendering;
 
 use std::ffi::OsString;
@@ -50,6 +51,29 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
         trial("a full disk is exit code 4", &[], a_full_disk),
+        trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),
+        trial(
+            "a traced picture that goes on is the uninterrupted one",
+            &[],
+            reference::a_picture_that_goes_on_is_the_uninterrupted_one,
+        ),
+        trial(
+            "a checkpoint that does not fit is refused by name",
+            &[],
+            reference::a_checkpoint_that_does_not_fit_is_refused,
+        ),
+        trial("samples, time and error end a traced picture", &[], reference::every_end_ends_a_picture),
+        trial(
+            "the reference writes png and layers and reads settings",
+            &[],
+            reference::the_reference_writes_png_and_layers_and_reads_settings,
+        ),
+        trial(
+            "a document is traced with its settings and spectral metals",
+            &[],
+            reference::a_document_is_traced_with_its_settings_and_spectral_metals,
+        ),
+        trial("options of the other method are refused", &[], reference::options_of_the_other_method_are_refused),
         trial("a table of n and k becomes a preset", &[], fitting::a_table_becomes_a_preset_that_renders),
         trial("a preset is fitted anew into its own file", &[], fitting::a_preset_is_fitted_anew_into_its_own_file),
         trial(

@@ -115,8 +115,11 @@ pub fn readme_examples_run() {
     let mut run = 0;
     for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
         let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
-        let is_file =
-            |arg: &str| [".png", ".exr", ".glb", ".hdr", ".html", ".csv", ".json"].iter().any(|end| arg.ends_with(end));
+        let is_file = |arg: &str| {
+            ["png", "exr", "glb", "hdr", "html", "csv", "json", "checkpoint"]
+                .iter()
+                .any(|end| arg.ends_with(&format!(".{end}")))
+        };
         for arg in args.iter_mut().filter(|arg| is_file(arg)) {
             *arg = text(&folder.join(&*arg)).into();
         }
@@ -140,7 +143,9 @@ pub fn readme_examples_run() {
                 Some(option) => args[option + 1] = "48x27".into(),
                 None => args.extend(["--size".into(), "48x27".into()]),
             }
-            args.extend(["--spp-jitter".into(), "1".into()]);
+            if !args.contains(&"reference".into()) {
+                args.extend(["--spp-jitter".into(), "1".into()]);
+            }
             if !args.contains(&"--env".into()) {
                 args.extend(["--env".into(), text(&environment).into()]);
             }
@@ -157,6 +162,9 @@ pub fn readme_examples_run() {
         "copper.png",
         "hammered.png",
         "workbench.exr",
+        "truth.png",
+        "truth.exr",
+        "truth.checkpoint",
         "brass.png",
         "diff.png",
         "forms.csv",

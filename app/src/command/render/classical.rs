@@ -1,0 +1,65 @@
+//! Pictures by the classical method, on the GPU.
+
+use std::io::Write;
+use std::time::Instant;
+
+use burnish_core::file::write_picture;
+use burnish_core::lighting::classical;
+use burnish_core::param::Settings;
+use burnish_render::{Gpu, Renderer, View};
+use glam::UVec2;
+
+use super::{Output, assign, tell};
+use crate::command::stage::{Forms, StageArgs, Staged};
+use crate::failure::{Exit, Failure, printable};
+
+/// Frames that are averaged when nothing is said.
+const FRAMES: u32 = 16;
+
+/// What only this method takes.
+#[derive(clap::Args)]
+pub struct ClassicalArgs {
+    /// Jittered frames that are averaged, 1 to 4096 [default: 16]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    spp_jitter: Option<u32>,
+}
+
+impl ClassicalArgs {
+    /// An option that was given.
+    pub fn given(&self) -> Option<&'static str> {
+        self.spp_jitter.map(|_| "--spp-jitter")
+    }
+}
+
+pub fn run(
+    args: &ClassicalArgs,
+    stage: &StageArgs,
+    set: &[(String, String)],
+    output: &Output,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let opened = stage.open()?;
+    let document = opened.document.as_ref();
+    let mut settings = document.map_or_else(|| Settings::new(classical::PARAMS), |d| d.lighting.settings());
+    assign(&mut settings, set)?;
+    let choice = classical::form_choice(&settings);
+    let Staged { scene, camera, size, notices, document, .. } = stage.set(opened, choice, Forms::OfMaterials)?;
+    tell(err, &notices)?;
+
+    let start = Instant::now();
+    let gpu = Gpu::new().map_err(Failure::resources)?;
+    let frames = args.spp_jitter.unwrap_or(FRAMES);
+    let view = View { size, camera, settings, jitter_frames: frames };
+    let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    for name in renderer.unshadowed_lights() {
+        writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
+    }
+    let picture = renderer.render(&view).map_err(Failure::resources)?;
+    let (tone, exposure_ev) = output.look(document.as_ref().map(|document| &document.view));
+    write_picture(&picture, &output.out, tone, exposure_ev).map_err(Failure::resources)?;
+    let UVec2 { x, y } = size;
+    let (adapter, secs) = (&gpu.report().name, start.elapsed().as_secs_f32());
+    writeln!(out, "wrote {}: {x}x{y}, {frames} frames, {secs:.1} s on {adapter}", output.out.display())?;
+    Ok(Exit::Ok)
+}

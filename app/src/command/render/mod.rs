@@ -1,0 +1,137 @@
+//! `burnish render`: a scene to a picture.
+
+mod classical;
+mod reference;
+mod tracing;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use burnish_core::color::tone::ToneMap;
+use burnish_core::document::ViewEntry;
+use burnish_core::file::PictureFormat;
+use burnish_core::lighting;
+use burnish_core::param::{ParamSpec, Settings};
+
+use classical::ClassicalArgs;
+use reference::ReferenceArgs;
+
+use super::stage::{self, StageArgs};
+use crate::failure::{Exit, Failure, printable};
+use crate::value;
+
+#[derive(clap::Args)]
+#[command(after_help = settings_help())]
+pub struct Args {
+    #[command(flatten)]
+    stage: StageArgs,
+    #[command(flatten)]
+    output: Output,
+    /// How light is computed: lookups on the GPU, or paths traced on the processor
+    #[arg(long, value_enum, default_value_t = Method::Classical)]
+    method: Method,
+    /// Setting of the method, see below; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
+    set: Vec<(String, String)>,
+    #[command(flatten, next_help_heading = "With --method classical")]
+    classical: ClassicalArgs,
+    #[command(flatten, next_help_heading = "With --method reference")]
+    reference: ReferenceArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Method {
+    Classical,
+    Reference,
+}
+
+/// Where the picture goes, and how it looks there.
+#[derive(clap::Args)]
+struct Output {
+    /// Picture to write: .png (what a screen shows) or .exr (linear radiance)
+    #[arg(long, value_name = "FILE", value_parser = value::picture_path)]
+    out: PathBuf,
+    /// Display transform of a .png: none, neutral, agx or aces [default: the document's, else neutral]
+    #[arg(long, value_parser = str::parse::<ToneMap>)]
+    tone: Option<ToneMap>,
+    /// Exposure of a .png in stops, -32 to 32 [default: the document's, else 0]
+    #[arg(long, value_name = "EV", value_parser = value::number(-32.0, 32.0), allow_negative_numbers = true)]
+    exposure: Option<f32>,
+}
+
+pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
+    let Args { stage, output, method, set, classical, reference } = args;
+    output.check()?;
+    let (foreign, other) = match method {
+        Method::Classical => (reference.given(), "reference"),
+        Method::Reference => (classical.given(), "classical"),
+    };
+    if let Some(option) = foreign {
+        return Err(Failure::usage(format!(
+            "{option} belongs to --method {other}; choose that, or leave {option} out"
+        )));
+    }
+    match method {
+        Method::Classical => classical::run(&classical, &stage, &set, &output, out, err),
+        Method::Reference => reference::run(&reference, &stage, &set, &output, out, err),
+    }
+}
+
+impl Output {
+    /// Refuses what could not be written, before the work and not after it.
+    fn check(&self) -> Result<(), Failure> {
+        let is_png = PictureFormat::of(&self.out) == Ok(PictureFormat::Png);
+        if !is_png && (self.tone.is_some() || self.exposure.is_some()) {
+            return Err(Failure::usage(
+                "--tone and --exposure shape a .png only; leave them out, an .exr holds the radiance itself",
+            ));
+        }
+        check_folder("--out", &self.out)
+    }
+
+    /// Display transform and exposure over what the document says.
+    fn look(&self, stored: Option<&ViewEntry>) -> (ToneMap, f32) {
+        let tone = self.tone.or_else(|| stored?.tone.parse().ok()).unwrap_or_default();
+        (tone, self.exposure.or(stored.map(|view| view.exposure_ev as f32)).unwrap_or(0.0))
+    }
+}
+
+fn check_folder(option: &str, file: &Path) -> Result<(), Failure> {
+    match file.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+        Some(folder) => {
+            let (file, folder) = (file.display(), folder.display());
+            let remedy = format!("create it or choose another {option}");
+            Err(Failure::resources(format!("{file}: there is no folder {folder}; {remedy}")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Applies `--set`.
+fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), Failure> {
+    for (key, text) in list {
+        settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
+    }
+    Ok(())
+}
+
+fn tell(err: &mut dyn Write, notices: &[String]) -> Result<(), Failure> {
+    for notice in notices {
+        writeln!(err, "burnish: notice: {}", printable(notice))?;
+    }
+    Ok(())
+}
+
+/// The settings that `--set` takes, from their declaration, and what `--finish` and `--coat` take.
+fn settings_help() -> String {
+    let list = |specs: &'static [ParamSpec]| -> String {
+        let defaults = Settings::new(specs);
+        let line = |spec: &ParamSpec| {
+            let value = defaults.text(spec.key).unwrap_or_default();
+            format!("  {}: {} [default: {value}]\n      {}\n", spec.key, spec.kind, spec.help)
+        };
+        specs.iter().map(line).collect()
+    };
+    let (classical, reference) = (list(lighting::classical::PARAMS), list(burnish_core::reference::PARAMS));
+    format!("Settings of --method classical:\n{classical}Settings of --method reference:\n{reference}{}", stage::help())
+}

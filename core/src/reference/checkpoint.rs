@@ -4,14 +4,15 @@
 //! they are the same. Then the picture has the bytes that it would have had without the interruption.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DVec3, UVec2};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Film, Options, Pixel, Rejected, View};
+use super::waves::MetalWaves;
+use super::{Film, Options, Pixel, Rejected, View, World};
 use crate::file::{Container, FileError, Kind};
-use crate::scene::Scene;
 use crate::scene::fingerprint::{self, Fingerprint};
 use crate::surface::ggx::Masking;
 
@@ -44,6 +45,8 @@ pub struct Key {
     clamp: String,
     masking: String,
     multiple_scattering: bool,
+    /// Hash of the metals when wavelengths are traced.
+    wavelengths: Option<String>,
 }
 
 /// What stands in the header.
@@ -63,10 +66,10 @@ struct RejectedEntry {
 
 impl Key {
     /// That of a tracing. Hashes the scene, see [`Fingerprint::new`].
-    pub fn new(scene: &Scene, options: &Options, view: &View) -> Key {
-        let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(scene);
+    pub fn new(world: &World, view: &View) -> Key {
+        let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(world.scene());
         let View { camera, size, seed } = view;
-        let Options { bounces, clamp, masking, multiple_scattering } = *options;
+        let Options { bounces, clamp, masking, multiple_scattering } = *world.options();
         Key {
             revision: REVISION,
             geometry: geometry.to_string(),
@@ -81,6 +84,7 @@ impl Key {
             clamp: clamp.to_string(),
             masking: masking_word(masking).into(),
             multiple_scattering,
+            wavelengths: world.wavelengths().map(hash_of_metals),
         }
     }
 
@@ -110,9 +114,26 @@ impl Key {
         word("clamp", self.clamp.clone(), file.clamp.clone());
         word("masking", self.masking.clone(), file.masking.clone());
         word("multiple scattering", switch(self.multiple_scattering), switch(file.multiple_scattering));
+        word("wavelengths", switch(self.wavelengths.is_some()), switch(file.wavelengths.is_some()));
         word("revision of the path tracer", self.revision.to_string(), file.revision.to_string());
+        if let (Some(here), Some(there)) = (&self.wavelengths, &file.wavelengths)
+            && here != there
+        {
+            list.push("the n and k of the metals".into());
+        }
         list
     }
+}
+
+/// Each metal after a 1, materials without one as a 0.
+fn hash_of_metals(metals: &[Option<Arc<MetalWaves>>]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for metal in metals {
+        hasher.update(&[metal.is_some().into()]);
+        let numbers = metal.iter().flat_map(|metal| metal.entries().as_flattened());
+        numbers.for_each(|number| _ = hasher.update(&number.to_le_bytes()));
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 /// As settings name it.

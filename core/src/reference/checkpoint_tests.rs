@@ -1,9 +1,13 @@
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::*;
 use crate::file::testing::Folder;
+use crate::material::{Reflectance, preset};
 use crate::reference::{Control, FirstHit, Pass, PathSample, trace_with};
-use crate::scene::{Camera, gallery};
+use crate::scene::{Camera, Scene, gallery};
+use crate::surface::fresnel::Fresnel;
 use crate::surface::ggx::Masking;
 
 fn view() -> View {
@@ -11,7 +15,19 @@ fn view() -> View {
 }
 
 fn key() -> Key {
-    Key::new(&gallery::open("workbench").unwrap(), &Options::default(), &view())
+    key_of(&gallery::open("workbench").unwrap(), &Options::default(), &view())
+}
+
+fn key_of(scene: &Scene, options: &Options, view: &View) -> Key {
+    Key::new(&World::new(&Arc::new(scene.clone()), *options), view)
+}
+
+/// The workbench with a metal.
+fn metallic() -> Scene {
+    let mut scene = gallery::open("workbench").unwrap();
+    let fresnel = Arc::new(Fresnel::Rescaled { f0: Vec3::ONE });
+    scene.materials[0].reflectance = Reflectance::Preset { id: "any".into(), fresnel };
+    scene
 }
 
 /// A path of any function, one of them not finite.
@@ -54,14 +70,14 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     let scene = gallery::open("workbench").unwrap();
     write(&file, &Film::new(view().size), &key()).unwrap();
     let refused = |scene: &Scene, options: &Options, view: &View| {
-        read(&file, &Key::new(scene, options, view)).unwrap_err().to_string()
+        read(&file, &key_of(scene, options, view)).unwrap_err().to_string()
     };
     let options = Options::default();
     let mut other = scene.clone();
     other.materials[0].roughness = 0.123;
     let text = refused(&other, &options, &view());
     assert!(text.contains("a.bin: is the checkpoint of another picture; what differs: the materials; go on"), "{text}");
-    let text = refused(&Scene { lights: vec![], meshes: vec![], environment: None, ..other }, &options, &view());
+    let text = refused(&Scene { lights: vec![], instances: vec![], environment: None, ..other }, &options, &view());
     assert!(text.contains("the geometry, the materials"), "{text}");
     let text = refused(&scene, &options, &View { seed: 8, size: UVec2::new(18, 19), ..view() });
     assert!(text.contains("the size (19x18 there, 18x19 here), the seed (7 there, 8 here);"), "{text}");
@@ -77,6 +93,16 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     ] {
         assert!(text.contains(part), "{text}");
     }
+    let by_wavelength = |id: &str| {
+        let world = World::new(&Arc::new(metallic()), options).by_wavelength(|_| preset::find(id).ok()).0;
+        Key::new(&world, &view())
+    };
+    assert_eq!(by_wavelength("Au"), by_wavelength("Au"));
+    write(&file, &Film::new(view().size), &by_wavelength("Au")).unwrap();
+    let text = read(&file, &by_wavelength("Ag")).unwrap_err().to_string();
+    assert!(text.contains("what differs: the n and k of the metals;"), "{text}");
+    let text = refused(&metallic(), &options, &view());
+    assert!(text.contains("what differs: the wavelengths (on there, off here);"), "{text}");
     let older = Key { revision: 0, ..key() };
     write(&file, &Film::new(view().size), &older).unwrap();
     assert!(read(&file, &key()).unwrap_err().to_string().contains("revision of the path tracer (0 there, 1 here)"));

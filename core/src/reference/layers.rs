@@ -5,15 +5,15 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::checkpoint::masking_word;
-use super::{Film, Options, Pixel};
+use super::{Film, Options, Pixel, View, World};
 use crate::file::{Attribute, Channel, FileError, Samples, write_exr_with};
 
 impl Film {
     /// Writes the film: `R G B` are the mean; `variance` is [`Pixel::variance`], `N` the mean normal, `albedo` the mean
     /// albedo, `id` the numbers of instance and material in the scene ([`super::NOTHING`], 4294967295, for the
     /// background). Attributes tell how it was made. Nothing in it depends on the time that it took.
-    pub fn write_exr(&self, options: &Options, seed: u32, path: &Path) -> Result<(), FileError> {
-        write_exr_with(&self.picture(), self.channels(), &self.attributes(options, seed), path)
+    pub fn write_exr(&self, world: &World, view: &View, path: &Path) -> Result<(), FileError> {
+        write_exr_with(&self.picture(), self.channels(), &self.attributes(world, view), path)
     }
 
     fn channels(&self) -> Vec<Channel> {
@@ -38,18 +38,19 @@ impl Film {
         channels
     }
 
-    fn attributes(&self, options: &Options, seed: u32) -> Vec<(&'static str, Attribute)> {
-        let Options { bounces, clamp, masking, multiple_scattering } = *options;
+    fn attributes(&self, world: &World, view: &View) -> Vec<(&'static str, Attribute)> {
+        let Options { bounces, clamp, masking, multiple_scattering } = *world.options();
+        let switch = |on: bool| Attribute::Text(if on { "on" } else { "off" }.into());
         let whole = |value: u32| Attribute::Whole(i32::try_from(value).unwrap_or(i32::MAX));
-        let multiple = if multiple_scattering { "on" } else { "off" };
         vec![
             ("burnish.method", Attribute::Text(super::ID.into())),
             ("burnish.samples", whole(self.samples())),
-            ("burnish.seed", Attribute::Number(seed.into())),
+            ("burnish.seed", Attribute::Number(view.seed.into())),
             ("burnish.bounces", whole(bounces)),
             ("burnish.clamp", Attribute::Number(clamp.into())),
             ("burnish.masking", Attribute::Text(masking_word(masking).into())),
-            ("burnish.multiple-scattering", Attribute::Text(multiple.into())),
+            ("burnish.multiple-scattering", switch(multiple_scattering)),
+            ("burnish.spectral", switch(world.wavelengths().is_some())),
             ("burnish.error", Attribute::Number(self.error())),
             ("burnish.rejected", Attribute::Number(self.rejected() as f64)),
             ("burnish.clamped-share", Attribute::Number(self.clamped_share())),
@@ -59,6 +60,8 @@ impl Film {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use exr::meta::attribute::AttributeValue;
     use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
     use glam::{UVec2, Vec3};
@@ -67,6 +70,7 @@ mod tests {
     use crate::file::read_picture;
     use crate::file::testing::Folder;
     use crate::reference::{Control, FirstHit, NOTHING, Pass, PathSample, trace_with};
+    use crate::scene::{Bounds, Camera};
 
     #[test]
     fn a_film_is_read_as_its_mean_and_holds_what_is_known_of_each_pixel() {
@@ -79,7 +83,9 @@ mod tests {
         assert_eq!(trace_with(&mut film, 4, &Control::default(), path), Pass::Whole);
         let folder = Folder::new();
         let file = folder.join("a.exr");
-        film.write_exr(&Options::default(), u32::MAX, &file).unwrap();
+        let world = World::new(&Arc::default(), Options::default());
+        let view = View { camera: Camera::frame(Bounds::EMPTY, 2.0), size: film.size(), seed: u32::MAX };
+        film.write_exr(&world, &view, &file).unwrap();
         assert!(read_picture(&file).unwrap().0 == film.picture());
 
         let image = read_all_flat_layers_from_file(&file).unwrap();

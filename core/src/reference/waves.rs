@@ -95,6 +95,11 @@ impl MetalWaves {
         MetalWaves { entries: (0..COUNT).map(entry).collect() }
     }
 
+    /// n, k and mean reflectance at every wavelength: all that paths read.
+    pub(super) fn entries(&self) -> &[[f32; 3]] {
+        &self.entries
+    }
+
     /// The curves at three wavelengths and their means.
     pub(super) fn at(&self, places: [usize; 3]) -> (Fresnel, Vec3) {
         let part = |which: usize| Vec3::from_array(places.map(|place| self.entries[place][which]));

@@ -113,6 +113,11 @@ impl World {
         (self, unknown)
     }
 
+    /// The metals at all wavelengths, by material; `None` when colours are traced.
+    pub(super) fn wavelengths(&self) -> Option<&[Option<Arc<MetalWaves>>]> {
+        self.has_waves.then_some(&self.metals)
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene

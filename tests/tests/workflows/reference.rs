@@ -85,6 +85,7 @@ pub fn a_checkpoint_that_does_not_fit_is_refused() {
         (&["--metal", "Au"], ["the materials;", "remove it"]),
         (&["--bounces", "2"], ["the bounces (3 there, 2 here);", "remove it"]),
         (&["--set", "masking=separable"], ["the masking (correlated there, separable here)", "remove it"]),
+        (&["--set", "spectral=on"], ["the wavelengths (off there, on here);", "remove it"]),
         (&["gallery:workbench?room=none"], ["the geometry", "remove it"]),
     ] {
         keep(more).failed(INPUT, &[&["x.checkpoint", "another picture"][..], &words].concat());
@@ -166,6 +167,7 @@ pub fn a_document_is_traced_with_its_settings_and_spectral_metals() {
     let spectral = render("a.exr", &path, &[]);
     assert!(render("b.exr", &path, &["--set", "fresnel=spectral"]) == spectral);
     assert!(render("c.exr", &path, &["--set", "fresnel=schlick"]) != spectral);
+    assert!(render("s.exr", &path, &["--set", "spectral=on"]) != spectral);
     let separable = render("d.exr", &path, &["--set", "masking=separable"]);
     assert!(separable != spectral);
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use burnish_core::document::Document;
 use burnish_core::file::{PictureFormat, write_png};
 use burnish_core::lighting::classical;
-use burnish_core::material::preset::FormChoice;
+use burnish_core::material::preset::{self, FormChoice};
 use burnish_core::param::Settings;
 use burnish_core::reference::checkpoint::Key;
 use burnish_core::reference::{self, Film, Goal, MAX_SAMPLES, Options, View, World};
@@ -112,14 +112,21 @@ pub fn run(
     let opened = stage.open()?;
     let settings = args.settings(set, opened.document.as_ref())?;
     let choice = form_choice(&settings, opened.document.as_ref());
-    let Staged { scene, camera, size, notices, document, .. } = stage.set(opened, choice, Forms::OfAll)?;
-    tell(err, &notices)?;
+    let Staged { scene, camera, size, mut notices, document, metals } = stage.set(opened, choice, Forms::OfAll)?;
 
     let view = View { camera, size, seed: args.seed.unwrap_or(0) };
     let pool = args.pool()?;
-    let world = pool.install(|| World::new(&Arc::new(scene), Options::new(&settings)));
+    let mut world = pool.install(|| World::new(&Arc::new(scene), Options::new(&settings)));
+    if reference::is_spectral(&settings) {
+        let of_document = |id: &str| document.as_ref()?.metal(id).cloned();
+        let metal = |id: &str| metals.get(id).cloned().or_else(|| of_document(id)).or_else(|| preset::find(id).ok());
+        let (by_wavelength, unknown) = world.by_wavelength(metal);
+        world = by_wavelength;
+        notices.extend(unknown.iter().map(|id| format!("the n and k of `{id}` are not known; its colour is traced")));
+    }
+    tell(err, &notices)?;
     let (film, store) = match &args.checkpoint {
-        Some(file) => resume(file, pool.install(|| Key::new(world.scene(), world.options(), &view)), size, args, err)?,
+        Some(file) => resume(file, pool.install(|| Key::new(&world, &view)), size, args, err)?,
         None => (Film::new(size), None),
     };
     let tracing = Tracing { world: &world, view: &view, goal: args.goal(), pool: &pool };
@@ -131,7 +138,7 @@ pub fn run(
     }
     let (tone, exposure_ev) = output.look(document.as_ref().map(|document| &document.view));
     match PictureFormat::of(&output.out) {
-        Ok(PictureFormat::Exr) => film.write_exr(world.options(), view.seed, &output.out),
+        Ok(PictureFormat::Exr) => film.write_exr(&world, &view, &output.out),
         _ => write_png(&film.picture(), &output.out, tone, exposure_ev),
     }
     .map_err(Failure::resources)?;

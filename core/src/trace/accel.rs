@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
@@ -136,22 +137,32 @@ fn binary(boxes: &[Bounds]) -> Vec<Binary> {
     // A power of two: what is scaled back is exact, and areas neither overflow nor vanish.
     let greatest = boxes.iter().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(0.0, f32::max);
     let scale = f32::from_bits(254_u32.saturating_sub(greatest.to_bits() >> 23).clamp(2, 252) << 23);
-    let boxes: Vec<Aabb> =
-        boxes.iter().map(|Bounds { min, max }| Aabb::new((*min * scale).into(), (*max * scale).into())).collect();
+    let scaled = |Bounds { min, max }: &Bounds| Aabb::new((*min * scale).into(), (*max * scale).into());
+    let boxes: Vec<Aabb> = boxes.par_iter().map(scaled).collect();
     let indices = (0..boxes.len() as u32).collect();
     let mut tree = PlocBuilder::new().build(PlocSearchDistance::Low, &boxes, indices, SortPrecision::U64, 2);
     ReinsertionOptimizer::default().run(&mut tree, 0.02, None);
-    let unscale = 1.0 / scale;
-    tree.nodes
-        .iter()
-        .map(|node| Binary {
-            min: node.aabb.min * unscale,
-            max: node.aabb.max * unscale,
-            first: match node.is_leaf() {
-                true => tree.primitive_indices[node.first_index as usize],
-                false => node.first_index,
-            },
-            is_leaf: node.is_leaf(),
-        })
-        .collect()
+    from_the_root(&tree, 1.0 / scale)
+}
+
+/// The nodes of a tree, each subtree in one piece.
+fn from_the_root(tree: &Bvh2, scale: f32) -> Vec<Binary> {
+    let mut list: Vec<Binary> = Vec::with_capacity(tree.nodes.len());
+    // Nodes of the tree, with the place of the parent whose second child they are.
+    let mut open: Vec<(u32, Option<usize>)> = tree.nodes.first().map(|_| (0, None)).into_iter().collect();
+    while let Some((index, parent)) = open.pop() {
+        let node = &tree.nodes[index as usize];
+        let place = list.len();
+        if let Some(parent) = parent {
+            list[parent].link = (place - parent) as u32;
+        }
+        let link = if node.is_leaf() { tree.primitive_indices[node.first_index as usize] } else { 0 };
+        let Aabb { min, max } = node.aabb;
+        list.push(Binary { min: (min * scale).into(), max: (max * scale).into(), link, is_leaf: node.is_leaf() });
+        if !node.is_leaf() {
+            open.push((node.first_index + 1, Some(place)));
+            open.push((node.first_index, None));
+        }
+    }
+    list
 }

@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::mesh_tree::{corners, triangles};
 use super::placed::Placed;
-use super::triangle::{Block, Sheared};
-use super::wide::WIDTH;
+use super::triangle::{BLOCK, Block, Sheared};
 use super::{Hit, Ray};
 use crate::scene::Scene;
 
@@ -19,7 +18,7 @@ pub fn brute_force(scene: &Scene, rays: &[Ray]) -> Vec<Option<Hit>> {
         };
         let solid: Vec<u32> = triangles(mesh).collect();
         let block = |places: &[u32]| Block::new(places.iter().map(|t| (*t, corners(mesh, *t))));
-        let blocks: Vec<Block> = solid.chunks(WIDTH).map(block).collect();
+        let blocks: Vec<Block> = solid.chunks(BLOCK).map(block).collect();
         let Some(inverse) = Placed::inverse(&instance.world_from_local) else {
             continue;
         };

@@ -1,10 +1,11 @@
 //! The triangles of one mesh in a tree.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
-use super::triangle::{Block, Sheared};
+use super::triangle::{BLOCK, Block, Sheared};
 use super::walk::{SLACK, Slabs, walk};
-use super::wide::{Binary, Node, WIDTH, Wide};
+use super::wide::{Binary, Node, Wide};
 use super::{Hit, Ray};
 use crate::scene::{Bounds, Mesh};
 
@@ -20,15 +21,14 @@ impl MeshTree {
     /// `binary` makes a binary tree over boxes.
     pub fn new(mesh: &Mesh, binary: impl FnOnce(&[Bounds]) -> Vec<Binary>) -> MeshTree {
         let triangles: Vec<u32> = triangles(mesh).collect();
-        let corners = |i: u32| corners(mesh, triangles[i as usize]);
-        let boxes: Vec<Bounds> = (0..triangles.len() as u32).map(|i| around(corners(i))).collect();
+        let boxes: Vec<Bounds> = triangles.par_iter().map(|triangle| around(corners(mesh, *triangle))).collect();
         let bounds = boxes.iter().fold(Bounds::EMPTY, |all, b| all.including(b.min).including(b.max));
-        let Wide { nodes, leaves } = Wide::new(&binary(&boxes), WIDTH);
-        let filled = |leaf: &[u32; WIDTH]| {
-            let places = leaf.iter().filter(|i| (**i as usize) < triangles.len());
-            Block::new(places.map(|i| (triangles[*i as usize], corners(*i))))
+        let Wide { nodes, leaves } = Wide::new(&binary(&boxes), BLOCK);
+        let filled = |leaf: &[u32; BLOCK]| {
+            let places = leaf.iter().filter_map(|i| triangles.get(*i as usize));
+            Block::new(places.map(|triangle| (*triangle, corners(mesh, *triangle))))
         };
-        let blocks = leaves.iter().map(filled).collect();
+        let blocks = leaves.par_iter().map(filled).collect();
         MeshTree { bounds, nodes, blocks }
     }
 
@@ -64,7 +64,7 @@ impl Sheared {
         let Some(met) = self.meet(block, *limit) else {
             return false;
         };
-        for lane in (0..WIDTH).filter(|lane| met.mask & (1 << lane) != 0) {
+        for lane in (0..BLOCK).filter(|lane| met.mask & (1 << lane) != 0) {
             let (t, barycentric) = met.at(lane);
             let hit = Hit { t, instance, triangle: block.triangles[lane], barycentric };
             if meet(hit, limit) {

@@ -9,6 +9,9 @@ use glam::{BVec4A, Vec2, Vec3, Vec4};
 
 use super::Ray;
 
+/// Triangles of a block.
+pub(super) const BLOCK: usize = 4;
+
 /// Marks a place in a block that holds no triangle.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -19,7 +22,7 @@ pub(super) struct Block {
     /// Corner, axis, triangle. NaN where there is no triangle: no comparison holds there.
     corners: [[Vec4; 3]; 3],
     /// Place in the mesh, or [`NONE`].
-    pub triangles: [u32; 4],
+    pub triangles: [u32; BLOCK],
 }
 
 /// A ray made ready for the triangles of one mesh.
@@ -44,12 +47,12 @@ pub(super) struct Met {
 }
 
 impl Block {
-    pub const EMPTY: Block = Block { corners: [[Vec4::NAN; 3]; 3], triangles: [NONE; 4] };
+    pub const EMPTY: Block = Block { corners: [[Vec4::NAN; 3]; 3], triangles: [NONE; BLOCK] };
 
     /// At most four triangles with their places in the mesh.
     pub fn new(triangles: impl IntoIterator<Item = (u32, [Vec3; 3])>) -> Block {
         let mut block = Block::EMPTY;
-        for (lane, (triangle, corners)) in triangles.into_iter().take(4).enumerate() {
+        for (lane, (triangle, corners)) in triangles.into_iter().take(BLOCK).enumerate() {
             block.triangles[lane] = triangle;
             for (axes, corner) in block.corners.iter_mut().zip(corners) {
                 for (values, value) in axes.iter_mut().zip(corner.to_array()) {
@@ -111,7 +114,7 @@ impl Sheared {
 fn exact(mut weights: [Vec4; 3], zero: [BVec4A; 3], across: [Vec4; 3], along: [Vec4; 3]) -> [Vec4; 3] {
     for (corner, (weight, zero)) in weights.iter_mut().zip(zero).enumerate() {
         let (b, c) = ((corner + 1) % 3, (corner + 2) % 3);
-        for lane in (0..4).filter(|lane| zero.test(*lane)) {
+        for lane in (0..BLOCK).filter(|lane| zero.test(*lane)) {
             let product =
                 |x: [Vec4; 3], i: usize, y: [Vec4; 3], j: usize| f64::from(x[i][lane]) * f64::from(y[j][lane]);
             weight[lane] = (product(across, c, along, b) - product(along, c, across, b)) as f32;

@@ -1,50 +1,72 @@
-//! A tree whose nodes have four children, made from a binary one.
+//! A tree whose nodes have eight children, made from a binary one.
 //!
 //! Ylitie, Karras and Laine 2017, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, section 3.1:
-//! the cheapest way to write each binary subtree as at most one, two or three wide ones follows from those of its
+//! the cheapest way to write a binary subtree as one wide subtree or as up to seven follows from those of its
 //! children, measured by the surface area heuristic.
 
-use glam::{Vec3A, Vec4};
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
 
-use super::triangle::NONE;
+use super::triangle::{BLOCK, NONE};
 
-/// Children of a node, and primitives of a leaf at most.
-pub(super) const WIDTH: usize = 4;
+/// Children of a node.
+pub(super) const WIDTH: usize = 8;
+
+/// Vectors that hold a number for each child.
+pub(super) const HALVES: usize = 2;
 
 /// Set in the reference of a child that is a leaf.
 pub(super) const LEAF: u32 = 1 << 31;
 
 /// Time to test a leaf of up to four primitives, in tests of a node.
-const LEAF_COST: f32 = 1.2;
+const LEAF_COST: f32 = 1.0;
 
-/// A node of a binary tree. The root is the first; children lie side by side.
+/// Lists of fewer binary nodes than this are not shared out between threads.
+const PARALLEL: usize = 1 << 14;
+
+/// How deep lists are shared out.
+const SPLITS: u32 = 12;
+
+/// Subtrees that threads write.
+const TASKS: usize = 64;
+
+/// A node of a binary tree that is written from the root down, each subtree in one piece: the first child follows its
+/// parent.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Binary {
-    pub min: Vec3A,
-    pub max: Vec3A,
-    /// The first child, or the primitive of a leaf.
-    pub first: u32,
+    pub min: Vec3,
+    pub max: Vec3,
+    /// Distance in the list to the second child, or the primitive of a leaf.
+    pub link: u32,
     pub is_leaf: bool,
 }
 
-/// Four boxes and what is in them.
+impl Binary {
+    fn area(&self) -> f32 {
+        let size = self.max - self.min;
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+}
+
+/// Eight boxes and what is in them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    /// Axis, least and greatest, child. Empty children have boxes that no ray meets.
-    pub planes: [[Vec4; 2]; 3],
-    /// Place of a node, or of a leaf when [`LEAF`] is set.
+    /// Axis, least and greatest, half, child. Empty children have boxes that no ray meets.
+    pub planes: [[[Vec4; HALVES]; 2]; 3],
+    /// Place of a node, or of a leaf when [`LEAF`] is set; [`NONE`] where there is no child.
     pub children: [u32; WIDTH],
 }
 
 impl Node {
-    const EMPTY: Node = Node { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], children: [NONE; WIDTH] };
+    const EMPTY: Node =
+        Node { planes: [[[Vec4::INFINITY; HALVES], [Vec4::NEG_INFINITY; HALVES]]; 3], children: [NONE; WIDTH] };
 
     fn set(&mut self, lane: usize, binary: &Binary, child: u32) {
         self.children[lane] = child;
         for axis in 0..3 {
-            self.planes[axis][0][lane] = binary.min[axis];
-            self.planes[axis][1][lane] = binary.max[axis];
+            self.planes[axis][0][lane / 4][lane % 4] = binary.min[axis];
+            self.planes[axis][1][lane / 4][lane % 4] = binary.max[axis];
         }
     }
 }
@@ -53,14 +75,15 @@ impl Node {
 #[derive(Debug, Default)]
 pub(super) struct Wide {
     pub nodes: Vec<Node>,
-    pub leaves: Vec<[u32; WIDTH]>,
+    pub leaves: Vec<[u32; BLOCK]>,
 }
 
-/// What is known of a binary subtree: the cost of writing it as at most one, two or three wide subtrees.
+/// What is known of a binary subtree.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cost {
+    /// The cost of writing it as at most 1, 2 .. 7 wide subtrees.
     of: [f32; WIDTH - 1],
-    /// How many of 1, 2, 3 and 4 wide subtrees the first child gets; 0 at 2 and 3 means that fewer do.
+    /// How many of at most 1, 2 .. 8 wide subtrees its first child gets; 0 where fewer are no worse.
     first_gets: [u8; WIDTH],
     /// Primitives; counts up to one more than fit into a leaf.
     primitives: u8,
@@ -68,132 +91,182 @@ struct Cost {
     is_leaf: bool,
 }
 
+/// A binary subtree that is to be written, by its place in the list, and the place of its node.
+type Open = (usize, usize);
+
 impl Wide {
     /// `leaf_size` primitives at most go into a leaf.
     pub fn new(binary: &[Binary], leaf_size: usize) -> Wide {
-        let mut wide = Wide::default();
         let Some(root) = binary.first() else {
-            return wide;
+            return Wide::default();
         };
-        let costs = costs(binary, leaf_size.clamp(1, WIDTH) as u8);
-        wide.nodes.push(Node::EMPTY);
+        let mut costs = vec![Cost::default(); binary.len()];
+        find_costs(binary, &mut costs, leaf_size.clamp(1, BLOCK) as u8, SPLITS);
+        let mut wide = Wide { nodes: vec![Node::EMPTY], leaves: Vec::new() };
         if costs[0].is_leaf {
-            let leaf = wide.leaf(binary, 0);
+            let leaf = wide.leaf(binary);
             wide.nodes[0].set(0, root, leaf);
             return wide;
         }
-        let mut open = vec![(0_u32, 0_usize)];
-        while let Some((subtree, place)) = open.pop() {
-            let mut node = Node::EMPTY;
-            let (children, count) = children(binary, &costs, subtree);
-            for (lane, child) in children.iter().take(count).enumerate() {
-                let reference = if costs[*child as usize].is_leaf {
-                    wide.leaf(binary, *child)
-                } else {
-                    wide.nodes.push(Node::EMPTY);
-                    open.push((*child, wide.nodes.len() - 1));
-                    wide.nodes.len() as u32 - 1
-                };
-                node.set(lane, &binary[*child as usize], reference);
-            }
-            wide.nodes[place] = node;
+        // From the root until there is enough to share out.
+        let mut open: Vec<Open> = vec![(0, 0)];
+        let mut done = 0;
+        while done < open.len() && open.len() - done < TASKS {
+            wide.write(binary, &costs, open[done], &mut open);
+            done += 1;
+        }
+        let open = &open[done..];
+        let parts: Vec<Wide> = open.par_iter().map(|(subtree, _)| Wide::subtree(binary, &costs, *subtree)).collect();
+        for ((_, place), part) in open.iter().zip(parts) {
+            wide.append(part, *place);
         }
         wide
     }
 
-    /// Writes the primitives of a subtree as a leaf and returns the reference to it.
-    fn leaf(&mut self, binary: &[Binary], subtree: u32) -> u32 {
-        let mut leaf = [NONE; WIDTH];
+    fn subtree(binary: &[Binary], costs: &[Cost], subtree: usize) -> Wide {
+        let mut wide = Wide { nodes: vec![Node::EMPTY], leaves: Vec::new() };
+        let mut open = vec![(subtree, 0)];
+        while let Some(next) = open.pop() {
+            wide.write(binary, costs, next, &mut open);
+        }
+        wide
+    }
+
+    /// Writes the node of a subtree and makes places for its children.
+    fn write(&mut self, binary: &[Binary], costs: &[Cost], (subtree, place): Open, open: &mut Vec<Open>) {
+        let mut node = Node::EMPTY;
+        let (children, count) = children(binary, costs, subtree);
+        for (lane, child) in children.into_iter().take(count).enumerate() {
+            let reference = if costs[child].is_leaf {
+                self.leaf(&binary[child..])
+            } else {
+                self.nodes.push(Node::EMPTY);
+                open.push((child, self.nodes.len() - 1));
+                self.nodes.len() as u32 - 1
+            };
+            node.set(lane, &binary[child], reference);
+        }
+        self.nodes[place] = node;
+    }
+
+    /// Writes the primitives of the subtree at the start of a list as a leaf and returns the reference to it.
+    fn leaf(&mut self, binary: &[Binary]) -> u32 {
+        let mut leaf = [NONE; BLOCK];
         let mut places = leaf.iter_mut();
-        let mut open = [subtree; WIDTH + 1];
-        let mut count = 1;
-        while count > 0 {
-            count -= 1;
-            let node = &binary[open[count] as usize];
+        let mut open = 1;
+        for node in binary {
             if !node.is_leaf {
-                open[count] = node.first + 1;
-                open[count + 1] = node.first;
-                count += 2;
-            } else if let Some(place) = places.next() {
-                *place = node.first;
+                open += 1;
+                continue;
+            }
+            if let Some(place) = places.next() {
+                *place = node.link;
+            }
+            open -= 1;
+            if open == 0 {
+                break;
             }
         }
         self.leaves.push(leaf);
         LEAF | (self.leaves.len() as u32 - 1)
     }
+
+    /// Adds a tree of its own; its root goes to a place that was made for it.
+    fn append(&mut self, part: Wide, place: usize) {
+        let (nodes, leaves) = (self.nodes.len() as u32, self.leaves.len() as u32);
+        let moved = part.nodes.into_iter().map(|mut node| {
+            for child in node.children.iter_mut().filter(|child| **child != NONE) {
+                // The root is not among the others: the second node becomes the first of them.
+                *child = if *child & LEAF != 0 { *child + leaves } else { *child + nodes - 1 };
+            }
+            node
+        });
+        let mut moved = moved.fuse();
+        if let Some(root) = moved.next() {
+            self.nodes[place] = root;
+        }
+        self.nodes.extend(moved);
+        self.leaves.extend(part.leaves);
+    }
 }
 
-/// Costs of all subtrees, from the leaves to the root.
-fn costs(binary: &[Binary], leaf_size: u8) -> Vec<Cost> {
-    let mut order = Vec::with_capacity(binary.len());
-    order.push(0_u32);
-    let mut done = 0;
-    while let Some(node) = order.get(done).map(|i| &binary[*i as usize]) {
-        if !node.is_leaf {
-            order.extend([node.first, node.first + 1]);
+/// Costs of all subtrees of a list that is one subtree; it is shared out between threads so many times.
+fn find_costs(binary: &[Binary], costs: &mut [Cost], leaf_size: u8, splits: u32) {
+    let link = binary[0].link as usize;
+    if splits == 0 || binary[0].is_leaf || binary.len() < PARALLEL {
+        for i in (0..binary.len()).rev() {
+            costs[i] = match &binary[i] {
+                leaf if leaf.is_leaf => Cost::single(leaf),
+                inner => Cost::joined(inner, &costs[i + 1], &costs[i + inner.link as usize], leaf_size),
+            };
         }
-        done += 1;
+        return;
     }
-    let mut costs = vec![Cost::default(); binary.len()];
-    for index in order.into_iter().rev() {
-        let node = &binary[index as usize];
-        let size = node.max - node.min;
-        let area = size.x * size.y + size.y * size.z + size.z * size.x;
-        costs[index as usize] = if node.is_leaf {
-            Cost { of: [area * LEAF_COST; 3], primitives: 1, is_leaf: true, ..Cost::default() }
-        } else {
-            joined(area, &costs[node.first as usize], &costs[node.first as usize + 1], leaf_size)
-        };
-    }
-    costs
+    let (firsts, seconds) = costs.split_at_mut(link);
+    rayon::join(
+        || find_costs(&binary[1..link], &mut firsts[1..], leaf_size, splits - 1),
+        || find_costs(&binary[link..], seconds, leaf_size, splits - 1),
+    );
+    costs[0] = Cost::joined(&binary[0], &costs[1], &costs[link], leaf_size);
 }
 
-fn joined(area: f32, first: &Cost, second: &Cost, leaf_size: u8) -> Cost {
-    // Two, three and four subtrees, shared out between the children.
-    let [two, three, four] = [2, 3, 4].map(|total: usize| {
-        let shared = (1..total).map(|gets| (first.of[gets - 1] + second.of[total - gets - 1], gets as u8));
-        shared.fold((f32::INFINITY, 1), |best, this| if this.0 < best.0 { this } else { best })
-    });
-    let primitives = (first.primitives + second.primitives).min(leaf_size + 1);
-    let as_leaf = if primitives <= leaf_size { area * LEAF_COST } else { f32::INFINITY };
-    let as_node = area + four.0;
-    let mut cost = Cost {
-        of: [as_leaf.min(as_node), two.0, three.0],
-        first_gets: [0, two.1, three.1, four.1],
-        primitives,
-        is_leaf: as_leaf <= as_node,
-    };
-    for more in 1..WIDTH - 1 {
-        if cost.of[more - 1] <= cost.of[more] {
-            cost.of[more] = cost.of[more - 1];
-            cost.first_gets[more] = 0;
-        }
+impl Cost {
+    fn single(leaf: &Binary) -> Cost {
+        Cost { of: [leaf.area() * LEAF_COST; WIDTH - 1], primitives: 1, is_leaf: true, ..Cost::default() }
     }
-    cost
+
+    fn joined(node: &Binary, first: &Cost, second: &Cost, leaf_size: u8) -> Cost {
+        let primitives = (first.primitives + second.primitives).min(leaf_size + 1);
+        let mut cost = Cost { primitives, ..Cost::default() };
+        // The cheapest way to share out two subtrees or more between the children.
+        let mut shared = [f32::INFINITY; WIDTH + 1];
+        for (total, shared) in shared.iter_mut().enumerate().skip(2) {
+            for gets in 1..total {
+                let sum = first.of[gets - 1] + second.of[total - gets - 1];
+                if sum < *shared {
+                    *shared = sum;
+                    cost.first_gets[total - 1] = gets as u8;
+                }
+            }
+        }
+        let area = node.area();
+        let as_leaf = if primitives <= leaf_size { area * LEAF_COST } else { f32::INFINITY };
+        let as_node = area + shared[WIDTH];
+        cost.is_leaf = as_leaf <= as_node;
+        cost.of[0] = as_leaf.min(as_node);
+        for more in 1..WIDTH - 1 {
+            cost.of[more] = shared[more + 1];
+            if cost.of[more - 1] <= cost.of[more] {
+                cost.of[more] = cost.of[more - 1];
+                cost.first_gets[more] = 0;
+            }
+        }
+        cost
+    }
 }
 
 /// The binary subtrees that become the children of a wide node, and how many they are.
-fn children(binary: &[Binary], costs: &[Cost], subtree: u32) -> ([u32; WIDTH], usize) {
-    let mut found = [NONE; WIDTH];
+fn children(binary: &[Binary], costs: &[Cost], subtree: usize) -> ([usize; WIDTH], usize) {
+    let mut found = [0; WIDTH];
     let mut count = 0;
-    let root = &binary[subtree as usize];
-    let gets = costs[subtree as usize].first_gets[WIDTH - 1] as usize;
-    let mut open = [(root.first + 1, WIDTH - gets), (root.first, gets), (0, 0), (0, 0), (0, 0)];
-    let mut left = 2;
+    // Subtrees with the number of children that they become.
+    let mut open = [(0, 0); WIDTH];
+    open[0] = (subtree, WIDTH);
+    let mut left = 1;
     while left > 0 {
         left -= 1;
         let (index, mut share) = open[left];
-        let (node, cost) = (&binary[index as usize], &costs[index as usize]);
-        while share > 1 && cost.first_gets[share - 1] == 0 {
+        let gets = &costs[index].first_gets;
+        while share > 1 && gets[share - 1] == 0 {
             share -= 1;
         }
-        if share == 1 || node.is_leaf {
+        if share == 1 {
             found[count] = index;
             count += 1;
         } else {
-            let gets = cost.first_gets[share - 1] as usize;
-            open[left] = (node.first + 1, share - gets);
-            open[left + 1] = (node.first, gets);
+            let first = usize::from(gets[share - 1]);
+            open[left] = (index + binary[index].link as usize, share - first);
+            open[left + 1] = (index + 1, first);
             left += 2;
         }
     }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use super::emitters::Emitters;
 use super::lamps;
+use super::point::Point;
 use super::sky::Sky;
 use crate::scene::Scene;
 use crate::trace::Hit;
@@ -27,9 +28,9 @@ pub(super) struct LightSample {
     pub direction: Vec3,
     /// Where the ray ends.
     pub end: End,
-    /// Radiance over density, or irradiance of a lamp over the chance to draw it.
+    /// Radiance over density and rate, or irradiance of a lamp over the rate at which it is drawn.
     pub weight: Vec3,
-    /// Density per steradian; infinite for lamps.
+    /// Density per steradian times the rate; infinite for lamps.
     pub pdf: f32,
 }
 
@@ -49,12 +50,42 @@ pub(super) enum End {
     },
 }
 
-/// Chances of the three kinds at a point.
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Sky,
+    Emitters,
+    Lamps,
+}
+
+impl Kind {
+    pub(super) const ALL: [Kind; 3] = [Kind::Sky, Kind::Emitters, Kind::Lamps];
+}
+
+/// How many samples each kind gets at a point, in the mean: one each or one in all.
 #[derive(Clone, Copy, Debug)]
-struct Kinds {
-    sky: f32,
-    emitters: f32,
-    lamps: f32,
+pub(super) struct Rates([f32; 3]);
+
+impl Rates {
+    /// None at all.
+    pub(super) const NONE: Rates = Rates([0.0; 3]);
+
+    pub(super) fn of(&self, kind: Kind) -> f32 {
+        self.0[kind as usize]
+    }
+
+    /// For rates that sum to one: a kind by its rate, and what is left of `u` in [0, 1).
+    pub(super) fn choose(&self, u: f32) -> Option<(Kind, f32)> {
+        let mut left = u;
+        for kind in Kind::ALL {
+            let rate = self.of(kind);
+            if left < rate {
+                return Some((kind, left / rate));
+            }
+            left -= rate;
+        }
+        None
+    }
 }
 
 impl Lights {
@@ -73,67 +104,62 @@ impl Lights {
         self.sky.as_ref().map_or(Vec3::ZERO, |sky| sky.radiance(direction))
     }
 
-    fn kinds(&self, scene: &Scene, position: Vec3) -> Kinds {
+    /// The rates at a point: one sample of each kind that there is, or one by a guess at their irradiance.
+    pub(super) fn rates(&self, scene: &Scene, position: Vec3, each: bool) -> Rates {
         let sky = self.sky.as_ref().filter(|sky| sky.is_sampled());
         let sky = sky.map_or(0.0, |sky| std::f32::consts::PI * sky.mean().element_sum() / 3.0);
         let emitters = if self.emitters.is_empty() { 0.0 } else { self.emitters.weight(position) };
         let lamps = if scene.lights.is_empty() { 0.0 } else { lamps::weight(&scene.lights, position) };
-        let active = [sky, emitters, lamps].iter().filter(|weight| **weight > 0.0).count() as f32;
-        let sum = sky + emitters + lamps;
+        let weights = [sky, emitters, lamps];
+        if each {
+            return Rates(weights.map(|weight| if weight > 0.0 { 1.0 } else { 0.0 }));
+        }
+        let active = weights.iter().filter(|weight| **weight > 0.0).count() as f32;
+        let sum: f32 = weights.iter().sum();
         let chance = |weight: f32| {
             if weight > 0.0 { LEAST_CHANCE + (1.0 - active * LEAST_CHANCE) * weight / sum } else { 0.0 }
         };
-        Kinds { sky: chance(sky), emitters: chance(emitters), lamps: chance(lamps) }
+        Rates(weights.map(chance))
     }
 
-    /// Light to a point; `u` in `[0, 1)^3`, its z chooses. `None` where none is found.
-    pub(super) fn sample(&self, scene: &Scene, position: Vec3, u: Vec3) -> Option<LightSample> {
-        let kinds = self.kinds(scene, position);
-        let at = u.truncate();
-        if u.z < kinds.sky {
-            let sample = self.sky.as_ref()?.sample(at)?;
-            let (direction, pdf) = (sample.direction, kinds.sky * sample.pdf);
-            let weight = sample.radiance / pdf;
-            return Some(LightSample { direction, end: End::Distance(f32::INFINITY), weight, pdf });
+    /// Light of a kind to a point, for its rate; `u` in `[0, 1)^3`. `None` where none is found.
+    pub(super) fn sample(&self, scene: &Scene, position: Vec3, kind: Kind, rate: f32, u: Vec3) -> Option<LightSample> {
+        match kind {
+            Kind::Sky => {
+                let sample = self.sky.as_ref()?.sample(u.truncate())?;
+                let (direction, pdf) = (sample.direction, rate * sample.pdf);
+                let weight = sample.radiance / pdf;
+                Some(LightSample { direction, end: End::Distance(f32::INFINITY), weight, pdf })
+            }
+            Kind::Emitters => self.sample_emitters(scene, position, rate, u),
+            Kind::Lamps => {
+                let (light, chance) = lamps::choose(&scene.lights, position, u.z)?;
+                let weight = light.irradiance / (chance * rate);
+                let end = End::Distance(light.distance);
+                Some(LightSample { direction: light.direction, end, weight, pdf: f32::INFINITY })
+            }
         }
-        let rest = u.z - kinds.sky;
-        if rest < kinds.emitters {
-            return self.sample_emitters(scene, position, rest / kinds.emitters, at, kinds.emitters);
-        }
-        let u = ((rest - kinds.emitters) / kinds.lamps).min(1.0);
-        let (light, chance) = lamps::choose(&scene.lights, position, u)?;
-        let weight = light.irradiance / (chance * kinds.lamps);
-        Some(LightSample { direction: light.direction, end: End::Distance(light.distance), weight, pdf: f32::INFINITY })
     }
 
-    fn sample_emitters(
-        &self,
-        scene: &Scene,
-        position: Vec3,
-        choice: f32,
-        at: Vec2,
-        chance: f32,
-    ) -> Option<LightSample> {
-        let sample = self.emitters.sample(scene, position, Vec3::new(choice, at.x, at.y))?;
-        let pdf = chance * sample.pdf;
+    fn sample_emitters(&self, scene: &Scene, position: Vec3, rate: f32, u: Vec3) -> Option<LightSample> {
+        let sample = self.emitters.sample(scene, position, Vec3::new(u.z, u.x, u.y))?;
+        let pdf = rate * sample.pdf;
         let direction = (sample.point - position).normalize();
         let end = End::Surface { point: sample.point, extent: sample.extent, normal: sample.normal };
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
     }
 
-    /// Radiance of the sky, and the density with which [`Lights::sample`] at `position` draws that direction.
-    pub(super) fn look(&self, scene: &Scene, position: Vec3, direction: Vec3) -> (Vec3, f32) {
-        let Some(sky) = &self.sky else { return (Vec3::ZERO, 0.0) };
-        let (radiance, pdf) = sky.look(direction);
-        (radiance, if pdf > 0.0 { pdf * self.kinds(scene, position).sky } else { 0.0 })
+    /// Radiance of the sky, and the density with which it is sampled at `position`, before the rate.
+    pub(super) fn look(&self, direction: Vec3) -> (Vec3, f32) {
+        self.sky.as_ref().map_or((Vec3::ZERO, 0.0), |sky| sky.look(direction))
     }
 
-    /// Density with which [`Lights::sample`] at `position` draws a point of a glowing triangle.
-    pub(super) fn emitter_pdf(&self, scene: &Scene, position: Vec3, hit: &Hit, point: Vec3) -> f32 {
+    /// Density with which a hit of a glowing triangle is sampled at `position`, before the rate.
+    pub(super) fn emitter_pdf(&self, position: Vec3, hit: &Hit, point: &Point) -> f32 {
         if self.emitters.is_empty() {
             return 0.0;
         }
-        self.kinds(scene, position).emitters * self.emitters.pdf(position, hit.instance, hit.triangle, point)
+        self.emitters.pdf(position, hit.instance, hit.triangle, point.position)
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::bsdf::Bsdf;
-use super::lights::{End, LightSample};
+use super::lights::{End, Kind, LightSample, Rates};
 use super::point::Point;
 use super::sampler::PathSampler;
 use super::waves::Waves;
@@ -30,12 +30,14 @@ struct Path<'a> {
     rays: u32,
 }
 
-/// Where the last direction was drawn, and with which density: what the light found at its end is weighed by.
+/// Where and how the last direction was drawn: what the light found at its end is weighed by.
 #[derive(Clone, Copy)]
 struct Drawn {
     position: Vec3,
     /// Per steradian; infinite from the eye and from mirrors.
     pdf: f32,
+    /// Samples of light at that position.
+    rates: Rates,
 }
 
 /// Follows a path along a ray from the eye.
@@ -58,20 +60,13 @@ impl Path<'_> {
     fn follow(&mut self, mut ray: Ray) -> Option<FirstHit> {
         let world = self.world;
         let mut first = None;
-        let mut drawn = Drawn { position: ray.origin, pdf: f32::INFINITY };
+        let mut drawn = Drawn { position: ray.origin, pdf: f32::INFINITY, rates: Rates::NONE };
         loop {
             let sight = if self.surfaces == 0 { Sight::Eye } else { Sight::Light };
             let salt = self.sampler.salt().wrapping_add(self.surfaces);
             self.rays += 1;
             let Some(hit) = world.closest(&ray, sight, salt) else {
-                let light = match drawn.pdf.is_finite() {
-                    true => {
-                        let (light, pdf) = world.lights().look(world.scene(), drawn.position, ray.direction);
-                        light * balance(drawn.pdf, || pdf)
-                    }
-                    false => world.lights().sky(ray.direction),
-                };
-                self.add(self.waves.of_rgb(light));
+                self.escape(&drawn, ray.direction);
                 return first;
             };
             let to_viewer = -ray.direction;
@@ -81,44 +76,69 @@ impl Path<'_> {
             }
             let bsdf = Bsdf::new(world, &point, to_viewer);
             if point.emission != Vec3::ZERO {
-                let pdf = || world.lights().emitter_pdf(world.scene(), drawn.position, &hit, point.position);
+                let pdf = || drawn.rates.of(Kind::Emitters) * world.lights().emitter_pdf(drawn.position, &hit, &point);
                 self.add(balance(drawn.pdf, pdf) * bsdf.passed() * point.emission);
             }
             if self.surfaces == 0 {
-                let (instance, material) = (hit.instance, point.material);
-                first = Some(FirstHit {
-                    normal: point.base.n,
-                    albedo: self.waves.to_rgb(bsdf.albedo()),
-                    instance,
-                    material,
-                });
+                let (normal, albedo) = (point.base.n, self.waves.to_rgb(bsdf.albedo()));
+                first = Some(FirstHit { normal, albedo, instance: hit.instance, material: point.material });
             }
             if self.surfaces == world.options().bounces {
                 return first;
             }
             self.surfaces += 1;
-            let [ux, uy, uz, light_z] = self.sampler.next4();
+            let [ux, uy, uz, choice] = self.sampler.next4();
+            let mut rates = Rates::NONE;
             if bsdf.has_density() {
-                self.light(&point, &bsdf, light_z);
+                // What is seen straight, or in mirrors, is most of the picture: there it gets a sample of each kind.
+                let each = !drawn.pdf.is_finite();
+                rates = world.lights().rates(world.scene(), point.position, each);
+                if each { self.light_of_each(&point, &bsdf, &rates) } else { self.light(&point, &bsdf, &rates, choice) }
             }
             let Some(sample) = bsdf.sample(Vec3::new(ux, uy, uz)) else { return first };
             self.throughput *= sample.weight;
             if !self.survives() {
                 return first;
             }
-            drawn = Drawn { position: point.position, pdf: sample.pdf };
+            drawn = Drawn { position: point.position, pdf: sample.pdf, rates };
             let origin = offset(point.position, point.extent, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
         }
     }
 
-    /// Adds light that is drawn on purpose.
-    fn light(&mut self, point: &Point, bsdf: &Bsdf, choice: f32) {
-        let world = self.world;
-        let [x, y, ..] = self.sampler.next4();
-        let Some(sample) = world.lights().sample(world.scene(), point.position, Vec3::new(x, y, choice)) else {
-            return;
+    /// Adds the sky.
+    fn escape(&mut self, drawn: &Drawn, direction: Vec3) {
+        let lights = self.world.lights();
+        let light = if drawn.pdf.is_finite() {
+            let (light, pdf) = lights.look(direction);
+            light * balance(drawn.pdf, || drawn.rates.of(Kind::Sky) * pdf)
+        } else {
+            lights.sky(direction)
         };
+        self.add(self.waves.of_rgb(light));
+    }
+
+    /// Adds a sample of every kind of light.
+    fn light_of_each(&mut self, point: &Point, bsdf: &Bsdf, rates: &Rates) {
+        for kind in Kind::ALL {
+            if rates.of(kind) > 0.0 {
+                let [x, y, z, _] = self.sampler.next4();
+                self.light_of(point, bsdf, kind, rates.of(kind), Vec3::new(x, y, z));
+            }
+        }
+    }
+
+    /// Adds a sample of light, of a kind by its rate.
+    fn light(&mut self, point: &Point, bsdf: &Bsdf, rates: &Rates, choice: f32) {
+        let [x, y, ..] = self.sampler.next4();
+        if let Some((kind, z)) = rates.choose(choice) {
+            self.light_of(point, bsdf, kind, rates.of(kind), Vec3::new(x, y, z));
+        }
+    }
+
+    fn light_of(&mut self, point: &Point, bsdf: &Bsdf, kind: Kind, rate: f32, u: Vec3) {
+        let world = self.world;
+        let Some(sample) = world.lights().sample(world.scene(), point.position, kind, rate, u) else { return };
         let (value, pdf) = bsdf.eval(sample.direction);
         let mut light = value * self.waves.of_rgb(sample.weight);
         if sample.pdf.is_finite() {

@@ -77,11 +77,12 @@ impl Sky {
     }
 
     /// Density of [`Sky::sample`] per steradian; 0 where the map is not sampled.
-    pub fn pdf(&self, direction: Vec3) -> f32 {
+    #[cfg(test)]
+    fn pdf(&self, direction: Vec3) -> f32 {
         self.look(direction).1
     }
 
-    /// [`Sky::radiance`] and [`Sky::pdf`].
+    /// [`Sky::radiance`] from a direction, and the density of [`Sky::sample`] per steradian, 0 where the map is not sampled.
     pub fn look(&self, direction: Vec3) -> (Vec3, f32) {
         let uv = self.map.uv_from_direction(direction);
         let radiance = self.map.radiance_at(uv);

@@ -46,9 +46,12 @@ fn texture() -> TextureRef {
     TextureRef { image: 0, sampler: Sampler::default(), uv_set: 0, transform: Mat3::IDENTITY }
 }
 
-/// Changes of one thing each that light sees, with the part that they belong to.
-fn changes() -> Vec<(&'static str, Box<dyn Fn(&mut Scene)>)> {
-    let mut list: Vec<(&'static str, Box<dyn Fn(&mut Scene)>)> = Vec::new();
+/// The part of the scene that a change belongs to, and the change.
+type Change = (&'static str, Box<dyn Fn(&mut Scene)>);
+
+/// Changes of one thing each that light sees.
+fn changes() -> Vec<Change> {
+    let mut list: Vec<Change> = Vec::new();
     let mut mesh = |f: fn(&mut Mesh)| list.push(("geometry", Box::new(move |s| f(Arc::make_mut(&mut s.meshes[0])))));
     mesh(|m| m.positions[1].x = -1.0);
     mesh(|m| m.normals[0] = Vec3::X);

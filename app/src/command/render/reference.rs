@@ -191,6 +191,10 @@ fn warn(film: &Film, err: &mut dyn Write) -> Result<(), Failure> {
 }
 
 fn cancelled(film: &Film, checkpoint: Option<&Path>, unsaved: Option<&str>) -> Failure {
+    if film.samples() == 0 {
+        let message = "cancelled before every pixel had its first sample; nothing was written".into();
+        return Failure { exit: Exit::Cancelled, messages: vec![message] };
+    }
     let kept = match (checkpoint, unsaved) {
         (_, Some(reason)) => format!("the checkpoint is lost: {reason}"),
         (Some(file), None) => format!("{} holds them: the same command goes on from there", file.display()),

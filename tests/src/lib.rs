@@ -3,6 +3,7 @@
 pub mod scenes;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::OnceLock;
 
 use libtest_mimic::{Completion, Failed, Trial};
@@ -15,6 +16,8 @@ pub enum Need {
     Gpu,
     /// The trial models and environments beside the repository, see [`data_folder`].
     Data,
+    /// A Python that can render with Mitsuba 3, see [`mitsuba_python`].
+    Mitsuba,
 }
 
 impl Need {
@@ -23,6 +26,7 @@ impl Need {
         match self {
             Need::Gpu => "gpu",
             Need::Data => "data",
+            Need::Mitsuba => "mitsuba",
         }
     }
 
@@ -31,6 +35,7 @@ impl Need {
         match self {
             Need::Gpu => (!has_adapter()).then_some("no adapter"),
             Need::Data => data_folder().is_none().then_some("no trial data"),
+            Need::Mitsuba => mitsuba_python().is_none().then_some("no Python with mitsuba"),
         }
     }
 }
@@ -77,6 +82,17 @@ fn has_adapter() -> bool {
         });
         !pollster::block_on(instance.enumerate_adapters(backends)).is_empty()
     })
+}
+
+/// A Python with the packages `mitsuba` and `numpy`: `BURNISH_PYTHON`, else `python3`.
+pub fn mitsuba_python() -> Option<&'static Path> {
+    static FOUND: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let found = FOUND.get_or_init(|| {
+        let python = PathBuf::from(std::env::var_os("BURNISH_PYTHON").unwrap_or_else(|| "python3".into()));
+        let asked = Command::new(&python).args(["-c", "import mitsuba, numpy"]).output();
+        asked.is_ok_and(|output| output.status.success()).then_some(python)
+    });
+    found.as_deref()
 }
 
 /// Folder of the trial data (`models/`, `hdri/`): `BURNISH_DATA`, else `../shared/data` beside the repository.

@@ -1,7 +1,11 @@
 //! Foreign models, environments and optical constants: every one loads, or is refused for the reason that it should be.
+//! Foreign renderers: they agree with ours.
 //!
 //! The data are not part of the repository. They are looked for as `shared/data` beside it; without them the tests are
 //! ignored, and fail when `BURNISH_REQUIRE` names `data`.
+
+#[path = "external/oracle/mod.rs"]
+mod oracle;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -22,10 +26,11 @@ const TANGENTS: &[&str] = &["gltf/FlightHelmet/FlightHelmet.gltf", "gltf/suzanne
 
 fn main() {
     let mut arguments = Arguments::from_args();
-    let trials = match data_folder() {
+    let mut trials = match data_folder() {
         Some(data) => trials(&data),
         None => vec![trial("models and environments", &[Need::Data], || ())],
     };
+    trials.extend(oracle::trials());
     // Decoding is parallel within each trial.
     arguments.test_threads.get_or_insert(1);
     libtest_mimic::run(&arguments, trials).exit();

@@ -2,7 +2,7 @@
 //! `main` and stays below 20 000 triangles.
 
 mod lights_and_alpha;
-mod stage;
+pub mod stage;
 
 use std::sync::Arc;
 

@@ -14,6 +14,7 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// An empty one.
     pub fn new(name: &str) -> Stage {
         let environment = Some(Arc::new(gallery::studio()));
         Stage { scene: Scene { name: name.into(), environment, ..Scene::default() } }

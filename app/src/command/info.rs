@@ -55,6 +55,9 @@ struct MaterialInfo {
     opacity: f32,
     metallic: f32,
     roughness: f32,
+    reflection_model: &'static str,
+    /// Of Blinn-Phong.
+    exponent: f32,
     emission: [f32; 3],
     ior: f32,
     specular: f32,
@@ -205,6 +208,8 @@ impl MaterialInfo {
             opacity: material.opacity,
             metallic: material.metallic,
             roughness: material.roughness,
+            reflection_model: material.reflection_model.id(),
+            exponent: material.exponent,
             emission: material.emission.to_array(),
             ior: material.ior,
             specular: material.specular,
@@ -243,7 +248,10 @@ impl MaterialInfo {
             Some(id) => format!("preset {id}"),
             None => format!("base color {}, metallic {}", spaced(self.base_color), self.metallic),
         }];
-        parts.push(format!("roughness {}", self.roughness));
+        parts.push(match self.reflection_model {
+            "ggx" => format!("roughness {}", self.roughness),
+            model => format!("{model} with exponent {}", self.exponent),
+        });
         let numbers = [
             ("opacity", self.opacity, 1.0),
             ("ior", self.ior, 1.5),

@@ -3,6 +3,7 @@
 pub mod finish;
 pub mod params;
 pub mod preset;
+mod reflection;
 pub mod saved;
 mod texture;
 
@@ -11,8 +12,10 @@ use std::sync::Arc;
 use glam::{Mat3, Vec3};
 
 use crate::surface::fresnel::Fresnel;
-use crate::surface::micro_normal;
+use crate::surface::layered::Lobe;
+use crate::surface::{blinn_phong, micro_normal};
 
+pub use reflection::ReflectionModel;
 pub use texture::TextureRole;
 
 /// A metallic-roughness material with coat and anisotropy; every factor multiplies its texture. Linear Rec.709.
@@ -28,10 +31,14 @@ pub struct Material {
     pub opacity: f32,
     /// 0 dielectric to 1 metal.
     pub metallic: f32,
-    /// Artist value 0..1; alpha is its square.
+    /// Artist value 0..1; alpha of GGX is its square.
     pub roughness: f32,
     /// G roughness, B metallic.
     pub metallic_roughness_texture: Option<TextureRef>,
+    /// Shape of the reflection of metal and dielectric.
+    pub reflection_model: ReflectionModel,
+    /// Exponent of Blinn-Phong, 0 to [`blinn_phong::EXPONENT_MAX`]; stands for roughness and anisotropy there.
+    pub exponent: f32,
     /// How the metal part reflects.
     pub reflectance: Reflectance,
     /// Tangent-space normals.
@@ -179,6 +186,8 @@ impl Default for Material {
             metallic: 0.0,
             roughness: 1.0,
             metallic_roughness_texture: None,
+            reflection_model: ReflectionModel::Ggx,
+            exponent: 32.0,
             reflectance: Reflectance::BaseColor,
             normal_texture: None,
             normal_scale: 1.0,
@@ -206,6 +215,18 @@ impl Default for Material {
             micro_normal: micro_normal::Kind::None,
             micro_size_mm: 5.0,
             micro_depth: 0.2,
+        }
+    }
+}
+
+impl Material {
+    /// The lobe of metal and dielectric.
+    pub fn lobe(&self) -> Lobe {
+        match self.reflection_model {
+            ReflectionModel::Ggx => Lobe::Ggx,
+            ReflectionModel::BlinnPhong(variant) => {
+                Lobe::BlinnPhong { exponent: blinn_phong::clamp_exponent(self.exponent), variant }
+            }
         }
     }
 }

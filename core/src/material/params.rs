@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 
-use super::{AlphaMode, Material};
+use super::{AlphaMode, Material, ReflectionModel};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue};
-use crate::surface::micro_normal;
+use crate::surface::{blinn_phong, micro_normal};
 
 /// Values by key.
 pub type Values = BTreeMap<&'static str, ParamValue>;
@@ -40,6 +40,28 @@ pub const PARAMS: &[ParamSpec] = &[
             180.0,
             0.0,
             "Direction of the brushing, counter-clockwise from the tangent.",
+        )
+    },
+    ParamSpec {
+        kind: ParamKind::Choice { options: &ReflectionModel::IDS, default: 0 },
+        ..number(
+            "reflection-model",
+            "Reflection model",
+            1.0,
+            0.0,
+            "Shape of highlights. ggx: microfacets of roughness and anisotropy. blinn-phong: a power of the cosine, as in \
+             older renderers, which darkens toward the rim. approximate, unnormalized and microfacet reproduce its \
+             published forms, not all of which keep the energy.",
+        )
+    },
+    ParamSpec {
+        kind: ParamKind::Number { min: 0.0, max: blinn_phong::EXPONENT_MAX as f64, default: 32.0 },
+        ..number(
+            "exponent",
+            "Exponent",
+            1.0,
+            32.0,
+            "Narrowness of a Blinn-Phong highlight, in the place of roughness: 8 is chalky, 32 dull, 512 polished.",
         )
     },
     ParamSpec {
@@ -105,6 +127,8 @@ pub fn get(material: &Material, key: &str) -> Option<ParamValue> {
         "roughness" => number(material.roughness),
         "anisotropy" => number(material.anisotropy),
         "anisotropy-rotation" => number(wrapped_degrees(material.anisotropy_rotation)),
+        "reflection-model" => ParamValue::Choice(material.reflection_model.index()),
+        "exponent" => number(material.exponent),
         "micro-normal" => ParamValue::Choice(material.micro_normal as usize),
         "micro-size" => number(material.micro_size_mm),
         "micro-depth" => number(material.micro_depth),
@@ -169,16 +193,22 @@ pub fn apply(material: &mut Material, values: &Values) {
                 "unlit" => material.unlit = on,
                 _ => {}
             },
-            ParamValue::Choice(index) => {
-                if let ("micro-normal", Some(kind)) = (*key, micro_normal::Kind::ALL.get(index)) {
-                    material.micro_normal = *kind;
-                }
-            }
+            ParamValue::Choice(index) => set_choice(material, key, index),
             ParamValue::Integer(_) => {}
         }
     }
     material.emission = emission;
     material.alpha_mode = alpha_mode;
+}
+
+fn set_choice(material: &mut Material, key: &str, index: usize) {
+    match key {
+        "reflection-model" => {
+            material.reflection_model = ReflectionModel::ALL.get(index).copied().unwrap_or_default();
+        }
+        "micro-normal" => material.micro_normal = micro_normal::Kind::ALL.get(index).copied().unwrap_or_default(),
+        _ => {}
+    }
 }
 
 fn set_number(material: &mut Material, key: &str, value: f32) {
@@ -190,6 +220,7 @@ fn set_number(material: &mut Material, key: &str, value: f32) {
             material.anisotropy_rotation = value.to_radians();
             return;
         }
+        "exponent" => &mut material.exponent,
         "micro-size" => &mut material.micro_size_mm,
         "micro-depth" => &mut material.micro_depth,
         "coat" => &mut material.coat,

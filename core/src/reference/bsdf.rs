@@ -6,9 +6,9 @@ use super::point::Point;
 use super::world::World;
 use crate::math::frame::Frame;
 use crate::math::sampling::cosine_hemisphere;
-use crate::surface::ggx::albedo::{loss, loss_mean};
+use crate::surface::ggx::albedo::loss_mean;
 use crate::surface::layered::{self, Surface};
-use crate::surface::{coat, dielectric, fresnel, ggx, lambert};
+use crate::surface::{coat, fresnel, ggx, lambert};
 
 /// Least cosine to the viewer in a shading frame: normals that turn away are turned back to the rim.
 const COS_MIN: f32 = 1e-3;
@@ -98,7 +98,7 @@ impl<'a> Bsdf<'a> {
             pdf = chances.spread * lambert::pdf(local);
             if !self.base_is_mirror {
                 value += layered::glossy(s, self.wo, local);
-                pdf += chances.glossy * ggx::pdf(self.wo, local, s.alpha);
+                pdf += chances.glossy * s.lobe.pdf(self.wo, local, s.alpha);
             }
             value *= local.z;
         }
@@ -125,7 +125,7 @@ impl<'a> Bsdf<'a> {
             if self.base_is_mirror {
                 return self.mirrored_base();
             }
-            self.base.to_world(ggx::sample_wi(self.wo, s.alpha, at)?)
+            self.base.to_world(s.lobe.sample_wi(self.wo, s.alpha, at)?)
         } else if u.z < glossy + spread {
             self.base.to_world(cosine_hemisphere(at))
         } else {
@@ -180,15 +180,14 @@ impl Chances {
 
 /// What the lobes of the base send of even light toward the viewer, about: glossy and spread.
 fn takes(s: &Surface, wo: Vec3, mirror: bool) -> (Vec3, Vec3) {
-    let lost = if mirror { 0.0 } else { loss(wo, s.alpha, s.masking) };
-    let glossy = (1.0 - lost) * layered::reflectance(s, wo.z);
+    let kept = if mirror { 1.0 } else { layered::lobe_albedo(s, wo) };
+    let glossy = kept * layered::reflectance(s, wo.z);
     let mut spread = Vec3::ZERO;
     if s.metallic > 0.0 && s.scatters_again() {
-        spread += s.metallic * lost * ggx::bounces(s.fresnel_mean, loss_mean(s.alpha, s.masking));
+        spread += s.metallic * (1.0 - kept) * ggx::bounces(s.fresnel_mean, loss_mean(s.alpha, s.masking));
     }
     if s.metallic < 1.0 {
-        let reflected = dielectric::albedo(wo, s.alpha, s.dielectric_f0.max_element(), s.dielectric_f90, s.masking);
-        spread += (1.0 - s.metallic) * (1.0 - reflected) * s.base_color;
+        spread += (1.0 - s.metallic) * layered::matte_albedo(s, wo);
     }
     (glossy, spread)
 }

@@ -41,6 +41,7 @@ struct Parts<'a> {
     base_color: Vec3,
     metallic: f32,
     alpha: Vec2,
+    lobe: Lobe,
     /// Curve of the material's metal and its mean, unless `own` takes its place.
     preset: Option<(&'a Fresnel, Vec3)>,
     /// Curve by the base colour, or of the metal at the wavelengths of the path.
@@ -156,7 +157,7 @@ impl<'a> Point<'a> {
 
     /// What is evaluated there.
     pub(super) fn surface(&self, world: &World) -> Surface<'_> {
-        let Parts { base_color, metallic, alpha, preset, own, dielectric_f0, dielectric_f90, coat, coat_alpha } =
+        let Parts { base_color, metallic, alpha, lobe, preset, own, dielectric_f0, dielectric_f90, coat, coat_alpha } =
             &self.parts;
         let options = world.options();
         let (fresnel, fresnel_mean) = preset.unwrap_or((&own.0, own.1));
@@ -164,7 +165,7 @@ impl<'a> Point<'a> {
             base_color: *base_color,
             metallic: *metallic,
             alpha: *alpha,
-            lobe: Lobe::Ggx,
+            lobe: *lobe,
             fresnel,
             fresnel_mean,
             dielectric_f0: *dielectric_f0,
@@ -209,7 +210,8 @@ impl<'a> Parts<'a> {
         Parts {
             base_color,
             metallic: if is_metal { 1.0 } else { (m.metallic * rough.z).clamp(0.0, 1.0) },
-            alpha: Vec2::new(along, roughness * roughness),
+            alpha: m.lobe().alpha(Vec2::new(along, roughness * roughness)),
+            lobe: m.lobe(),
             preset,
             own,
             dielectric_f0: waves.of_rgb(dielectric::f0(m.ior, weight, tint)),

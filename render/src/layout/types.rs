@@ -78,6 +78,7 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("MATERIAL_UNLIT", MATERIAL_UNLIT),
     ("MATERIAL_MASK", MATERIAL_MASK),
     ("MATERIAL_BLEND", MATERIAL_BLEND),
+    ("MATERIAL_LOBE_SHIFT", MATERIAL_LOBE_SHIFT),
     ("LIGHT_POINT", LIGHT_POINT),
     ("LIGHT_SPOT", LIGHT_SPOT),
     ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
@@ -94,6 +95,8 @@ pub const MATERIAL_UNLIT: u32 = 2;
 pub const MATERIAL_MASK: u32 = 4;
 /// Blended.
 pub const MATERIAL_BLEND: u32 = 8;
+/// From here on the flags hold the number of the lobe, [`burnish_core::surface::layered::Lobe::numbers`].
+pub const MATERIAL_LOBE_SHIFT: u32 = 8;
 /// Kind of [`LightData`].
 pub const LIGHT_POINT: u32 = 0;
 /// Kind of [`LightData`].
@@ -203,7 +206,7 @@ shared! {
         fresnel_c3: Vec3,
         micro_depth: f32,
         fresnel_mean: Vec3,
-        pad0: u32,
+        exponent: f32,
         textures: [TextureSlot; TEXTURE_COUNT],
     }
 }

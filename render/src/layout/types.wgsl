@@ -17,6 +17,8 @@ const MATERIAL_PRESET: u32 = 1u;
 const MATERIAL_UNLIT: u32 = 2u;
 const MATERIAL_MASK: u32 = 4u;
 const MATERIAL_BLEND: u32 = 8u;
+// From here on the flags hold the number of the lobe.
+const MATERIAL_LOBE_SHIFT: u32 = 8u;
 
 const LIGHT_POINT: u32 = 0u;
 const LIGHT_SPOT: u32 = 1u;
@@ -131,7 +133,8 @@ struct MaterialData {
     // Root mean square slope.
     micro_depth: f32,
     fresnel_mean: vec3f,
-    pad0: u32,
+    // Of the lobe, where it is not GGX.
+    exponent: f32,
     textures: array<TextureSlot, 11>,
 }
 

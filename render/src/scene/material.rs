@@ -9,7 +9,8 @@ use glam::{Vec2, Vec4};
 
 use crate::device::Gpu;
 use crate::layout::types::{
-    MATERIAL_BLEND, MATERIAL_MASK, MATERIAL_PRESET, MATERIAL_UNLIT, MaterialData, TEXTURE_COUNT, TextureSlot,
+    MATERIAL_BLEND, MATERIAL_LOBE_SHIFT, MATERIAL_MASK, MATERIAL_PRESET, MATERIAL_UNLIT, MaterialData, TEXTURE_COUNT,
+    TextureSlot,
 };
 use crate::tables::Tables;
 use crate::textures::TextureCache;
@@ -63,6 +64,8 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
     if matches!(m.reflectance, Reflectance::Preset { .. }) {
         flags |= MATERIAL_PRESET;
     }
+    let (lobe, exponent) = m.lobe().numbers();
+    flags |= lobe << MATERIAL_LOBE_SHIFT;
     let fresnel = tables.fresnel(index);
     let textures = m.textures();
     MaterialData {
@@ -95,7 +98,7 @@ fn material_data(m: &Material, index: usize, tables: &Tables) -> MaterialData {
         fresnel_c3: fresnel.numbers[4],
         micro_depth: m.micro_depth,
         fresnel_mean: fresnel.mean,
-        pad0: 0,
+        exponent,
         textures: std::array::from_fn(|i| match textures[i] {
             Some(texture) if !bypassed(m, TextureRole::ALL[i]) => TextureSlot::new(texture),
             _ => TextureSlot::absent(),

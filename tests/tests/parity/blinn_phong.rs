@@ -35,14 +35,17 @@ const NUMBERS: &str = "
     y[0].z = blinn_phong_exponent(x[0].z);
     y[0].w = blinn_phong_normalizer(s, variant);
     y[1].x = blinn_phong_cosine_share(s, variant);
+    y[1].y = blinn_phong_albedo(x[0].w, s, variant);
+    y[1].z = blinn_phong_albedo_mean(s, variant);
 ";
 
 fn numbers_inputs() -> Vec<[Vec4; 1]> {
     let mut inputs = Vec::new();
     for exponent in EXPONENTS {
         for variant in Variant::ALL {
-            for width in [0.0, 1e-3, 0.05, 0.3, 1.0, 2.0] {
-                inputs.push([Vec4::new(exponent, variant as u32 as f32, width, 0.0)]);
+            for (i, mu) in grid::COSINES.into_iter().enumerate() {
+                let width = [0.0, 1e-3, 0.05, 0.3, 1.0, 2.0][i % 6];
+                inputs.push([Vec4::new(exponent, variant as u32 as f32, width, mu)]);
             }
         }
     }
@@ -54,7 +57,9 @@ fn numbers(x: &[Vec4; 1]) -> [Vec4; 2] {
     let clamped = blinn_phong::clamp_exponent(s);
     let widths = Vec2::new(blinn_phong::alpha(s), blinn_phong::exponent(x[0].z));
     let normalizer = blinn_phong::normalizer(s, variant);
-    [Vec4::new(clamped, widths.x, widths.y, normalizer), grid::one(blinn_phong::cosine_share(s, variant))]
+    let (albedo, mean) = (blinn_phong::albedo(x[0].w, s, variant), blinn_phong::albedo_mean(s, variant));
+    let shares = Vec3::new(blinn_phong::cosine_share(s, variant), albedo, mean);
+    [Vec4::new(clamped, widths.x, widths.y, normalizer), v4(shares, 0.0)]
 }
 
 const RESTS: &str = "

@@ -17,7 +17,9 @@ pub fn cases() -> Vec<Case> {
             |x| {
                 let s = surface::unpack(x);
                 let [wo, wi, coat_wo, coat_wi] = [x[4], x[5], x[6], x[7]].map(Vec4::truncate);
-                [v4(layered::response(&s, wo, wi, coat_wo, coat_wi), 0.0), v4(layered::base(&s, wo, wi), 0.0)]
+                let response = layered::response(&s, wo, wi, coat_wo, coat_wi);
+                let share = layered::lobe_albedo(&s, wo);
+                [v4(response, 0.0), v4(layered::base(&s, wo, wi), 0.0), v4(layered::matte_albedo(&s, wo), share)]
             },
         )
         .with(surface::WGSL),
@@ -28,6 +30,7 @@ const RESPONSE: &str = "
     let s = parity_surface(x[0], x[1], x[2], x[3]);
     y[0] = vec4f(layered_response(s, x[4].xyz, x[5].xyz, x[6].xyz, x[7].xyz), 0.0);
     y[1] = vec4f(layered_base(s, x[4].xyz, x[5].xyz), 0.0);
+    y[2] = vec4f(layered_matte_albedo(s, x[4].xyz), layered_lobe_albedo(s, x[4].xyz));
 ";
 
 fn variants() -> Vec<Variant> {

@@ -95,9 +95,9 @@ fn classical_width(alpha: vec2f) -> f32 {
     return sqrt(0.5 * dot(alpha, alpha));
 }
 
-// Directional albedo of single scattering for the surface's metal; table 0 stands for a curve f0 + (1 - f0)(1 - x)^5.
+// Directional albedo of the lobe for the surface's metal; table 0 stands for a curve f0 + (1 - f0)(1 - x)^5.
 fn classical_metal_albedo(s: Surface, table: u32, wo: vec3f) -> vec3f {
-    let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+    let e = layered_lobe_albedo(s, wo);
     if table == 0u {
         return e * mix(s.fresnel.f0, vec3f(1.0), ggx_schlick_ratio(wo, s.alpha, s.masking));
     }
@@ -110,18 +110,6 @@ fn classical_metal_albedo(s: Surface, table: u32, wo: vec3f) -> vec3f {
         ggx_albedo_plane(table + 2u * size, x, y, GGX_ALBEDO_MU),
     );
     return e * mean;
-}
-
-// Fresnel of the reflection that metal and dielectric share.
-fn classical_fresnel(s: Surface, cos_theta: f32) -> vec3f {
-    var value = vec3f(0.0);
-    if s.metallic > 0.0 {
-        value += s.metallic * fresnel_eval(s.fresnel, cos_theta);
-    }
-    if s.metallic < 1.0 {
-        value += (1.0 - s.metallic) * fresnel_schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
-    }
-    return value;
 }
 
 // Normal bent toward the viewer in the plane in which an anisotropic lobe is wide, which stretches the one lookup of the
@@ -154,45 +142,65 @@ fn classical_split_sum(s: Surface, table: u32, base: Frame, wo: vec3f, levels: f
         albedo += s.metallic * classical_metal_albedo(s, table, wo);
     }
     if s.metallic < 1.0 {
-        let e = 1.0 - ggx_loss(wo, s.alpha, s.masking);
+        let e = layered_lobe_albedo(s, wo);
         let ratio = ggx_schlick_ratio(wo, s.alpha, s.masking);
         albedo += (1.0 - s.metallic) * e * mix(s.dielectric_f0, vec3f(s.dielectric_f90), ratio);
     }
     return albedo * classical_prefiltered(direction, classical_level(roughness, levels));
 }
 
-// Reflection by filtered importance sampling of visible normals. A wide lobe's samples would meet a lamp of a few texels
-// or miss it: there the brightest texels are left out of the map and reflected one by one.
+// A direction drawn from the lobe; there is none where wi is not above the horizon.
+struct ClassicalDrawn {
+    wi: vec3f,
+    // At the half vector.
+    cos_theta: f32,
+    pdf: f32,
+    // BRDF for F = 1 times cosine over density.
+    weight: f32,
+}
+
+fn classical_drawn(s: Surface, wo: vec3f, u: vec2f) -> ClassicalDrawn {
+    if s.lobe == LAYERED_GGX {
+        let wm = ggx_sample_wm(wo, s.alpha, u);
+        let wi = reflect(-wo, wm);
+        // What is left of the quotient, in which distribution and cosines cancel.
+        let weight = ggx_shadowing_masking(wo, wi, s.alpha, s.masking) / max(ggx_masking(wo, s.alpha), 1e-12);
+        return ClassicalDrawn(wi, dot(wi, wm), ggx_pdf(wo, wi, s.alpha), weight);
+    }
+    let wi = blinn_phong_sample_wi(wo, s.exponent, s.lobe, u);
+    let facet = blinn_phong_facet(wo, wi, s.exponent, s.lobe);
+    let pdf = blinn_phong_pdf(wo, wi, s.exponent, s.lobe);
+    return ClassicalDrawn(wi, facet.x, pdf, facet.y * wi.z / max(pdf, 1e-12));
+}
+
+// Reflection by filtered importance sampling of the lobe. A wide lobe's samples would meet a lamp of a few texels or miss
+// it: there the brightest texels are left out of the map and reflected one by one.
 fn classical_sampled(s: Surface, base: Frame, wo: vec3f, lobes: ClassicalLobes) -> vec3f {
     let wide = min(s.alpha.x, s.alpha.y) >= lobes.wide;
-    let g1 = ggx_masking(wo, s.alpha);
     var sum = vec3f(0.0);
     for (var i = 0u; i < lobes.samples; i++) {
         let u = sampling_spiral(i, lobes.samples, lobes.rotation);
-        let wm = ggx_sample_wm(wo, s.alpha, u);
-        let wi = reflect(-wo, wm);
-        if wi.z <= 0.0 {
+        let drawn = classical_drawn(s, wo, u);
+        if drawn.wi.z <= 0.0 {
             continue;
         }
-        let pdf = ggx_pdf(wo, wi, s.alpha);
-        let weight = ggx_shadowing_masking(wo, wi, s.alpha, s.masking) / max(g1, 1e-12);
-        let direction = frame_to_world(base, wi);
-        let level = classical_footprint(direction, pdf, lobes.samples, lobes.radiance_levels, 0.0);
+        let direction = frame_to_world(base, drawn.wi);
+        let level = classical_footprint(direction, drawn.pdf, lobes.samples, lobes.radiance_levels, 0.0);
         var radiance: vec3f;
         if wide {
             radiance = classical_dimmed(direction, level);
         } else {
             radiance = classical_radiance(direction, level);
         }
-        sum += weight * classical_fresnel(s, dot(wi, wm)) * radiance;
+        sum += drawn.weight * layered_reflectance(s, drawn.cos_theta) * radiance;
     }
     sum /= f32(lobes.samples);
     for (var i = 0u; wide && i < lobes.sources; i++) {
         let source = classical_source(i);
         let wi = frame_to_local(base, source[0]);
         if wi.z > 0.0 {
-            let facet = ggx_microfacet(wo, wi, s.alpha, s.masking);
-            sum += facet.y * wi.z * classical_fresnel(s, facet.x) * source[1];
+            let facet = layered_facet(s, wo, wi);
+            sum += facet.y * wi.z * layered_reflectance(s, facet.x) * source[1];
         }
     }
     return sum;
@@ -214,13 +222,11 @@ fn classical_environment(
         reflected = classical_sampled(s, base, wo, lobes);
     }
     var value = classical_occlusion(wo.z, width, occlusion) * reflected;
-    if s.metallic > 0.0 && s.multiple_scattering {
+    if s.metallic > 0.0 && layered_scatters_again(s) {
         value += s.metallic * classical_multiple_albedo(s, wo) * irradiance;
     }
     if s.metallic < 1.0 {
-        let strongest = max(s.dielectric_f0.x, max(s.dielectric_f0.y, s.dielectric_f0.z));
-        let left = 1.0 - dielectric_albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
-        value += (1.0 - s.metallic) * left * s.base_color * irradiance;
+        value += (1.0 - s.metallic) * layered_matte_albedo(s, wo) * irradiance;
     }
     if s.coat <= 0.0 {
         return value;
@@ -228,6 +234,7 @@ fn classical_environment(
 
     var top: Surface;
     top.alpha = vec2f(s.coat_alpha);
+    top.lobe = LAYERED_GGX;
     top.dielectric_f0 = vec3f(COAT_F0);
     top.dielectric_f90 = 1.0;
     top.masking = s.masking;

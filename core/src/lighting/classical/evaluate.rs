@@ -6,11 +6,10 @@ use super::level;
 use super::sources::Source;
 use crate::math::frame::Frame;
 use crate::math::sampling;
-use crate::surface::fresnel;
+use crate::surface::coat;
 use crate::surface::ggx;
 use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, loss, loss_mean, schlick_ratio};
-use crate::surface::layered::{Lobe, Surface};
-use crate::surface::{coat, dielectric};
+use crate::surface::layered::{self, Lobe, Surface};
 
 /// What the method looks up. Directions are unit vectors in world space.
 pub trait Maps {
@@ -122,13 +121,11 @@ pub fn environment(
         _ => sampled(maps, s, base, wo, lobes),
     };
     let mut value = reflection_occlusion(wo.z, width, occlusion) * reflected;
-    if s.metallic > 0.0 && s.multiple_scattering {
+    if s.metallic > 0.0 && s.scatters_again() {
         value += s.metallic * multiple_albedo(s, wo) * irradiance;
     }
     if s.metallic < 1.0 {
-        let strongest = s.dielectric_f0.max_element();
-        let left = 1.0 - dielectric::albedo(wo, s.alpha, strongest, s.dielectric_f90, s.masking);
-        value += (1.0 - s.metallic) * left * s.base_color * irradiance;
+        value += (1.0 - s.metallic) * layered::matte_albedo(s, wo) * irradiance;
     }
     if s.coat <= 0.0 {
         return value;
@@ -164,7 +161,7 @@ fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame,
     let direction = (2.0 * n.dot(wo_world) * n - wo_world).lerp(n, lean).normalize();
     let roughness = (s.alpha.x * s.alpha.y).sqrt().sqrt();
     let width = width(s.alpha);
-    let e = 1.0 - loss(wo, s.alpha, s.masking);
+    let e = layered::lobe_albedo(s, wo);
     let ratio = schlick_ratio(wo, s.alpha, s.masking);
     let schlick = s.dielectric_f0.lerp(Vec3::splat(s.dielectric_f90), ratio);
     let metal = match table {
@@ -195,41 +192,51 @@ fn mean_fresnel(table: &[f32], mu: f32, alpha: f32) -> Vec3 {
     Vec3::new(channel(0), channel(1), channel(2))
 }
 
-/// Filtered importance sampling of visible normals. A wide lobe's samples would meet a lamp of a few texels or miss it:
+/// Filtered importance sampling of the lobe. A wide lobe's samples would meet a lamp of a few texels or miss it:
 /// there the brightest blocks are left out of the map and reflected one by one.
 fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) -> Vec3 {
     let wide = s.alpha.min_element() >= maps.wide_alpha();
-    let g1 = ggx::masking(wo, s.alpha).max(1e-12);
     let mut sum = Vec3::ZERO;
     for i in 0..lobes.samples {
         let u = sampling::spiral(i, lobes.samples, lobes.rotation);
-        let wm = ggx::sample_wm(wo, s.alpha, u);
-        let wi = 2.0 * wo.dot(wm) * wm - wo;
-        if wi.z <= 0.0 {
-            continue;
-        }
-        let pdf = ggx::pdf(wo, wi, s.alpha);
-        let weight = ggx::shadowing_masking(wo, wi, s.alpha, s.masking) / g1;
+        let Some(Drawn { wi, cos_theta, pdf, weight }) = drawn(s, wo, u) else { continue };
         let direction = base.to_world(wi);
         let level = footprint(direction, pdf, lobes.samples, maps.radiance_levels(), 0.0);
         let radiance = if wide { maps.dimmed(direction, level) } else { maps.radiance(direction, level) };
-        sum += weight * shared_fresnel(s, wi.dot(wm)) * radiance;
+        sum += weight * layered::reflectance(s, cos_theta) * radiance;
     }
     sum /= lobes.samples as f32;
     for source in if wide { maps.sources() } else { &[] } {
         let wi = base.to_local(source.direction);
         if wi.z > 0.0 {
-            let facet = ggx::microfacet(wo, wi, s.alpha, s.masking);
-            sum += facet.y * wi.z * shared_fresnel(s, facet.x) * source.power;
+            let facet = s.lobe.facet(wo, wi, s.alpha, s.masking);
+            sum += facet.y * wi.z * layered::reflectance(s, facet.x) * source.power;
         }
     }
     sum
 }
 
-/// Fresnel of the reflection that metal and dielectric share.
-fn shared_fresnel(s: &Surface, cos_theta: f32) -> Vec3 {
-    let dielectric = fresnel::schlick(s.dielectric_f0, s.dielectric_f90, cos_theta);
-    s.metallic * s.fresnel.eval(cos_theta) + (1.0 - s.metallic) * dielectric
+/// A direction drawn from the lobe.
+struct Drawn {
+    wi: Vec3,
+    /// At the half vector.
+    cos_theta: f32,
+    pdf: f32,
+    /// BRDF for F = 1 times cosine over density.
+    weight: f32,
+}
+
+fn drawn(s: &Surface, wo: Vec3, u: Vec2) -> Option<Drawn> {
+    if s.lobe == Lobe::Ggx {
+        let wm = ggx::sample_wm(wo, s.alpha, u);
+        let wi = 2.0 * wo.dot(wm) * wm - wo;
+        // What is left of the quotient, in which distribution and cosines cancel.
+        let weight = ggx::shadowing_masking(wo, wi, s.alpha, s.masking) / ggx::masking(wo, s.alpha).max(1e-12);
+        return (wi.z > 0.0).then(|| Drawn { wi, cos_theta: wi.dot(wm), pdf: ggx::pdf(wo, wi, s.alpha), weight });
+    }
+    let wi = s.lobe.sample_wi(wo, s.alpha, u)?;
+    let (facet, pdf) = (s.lobe.facet(wo, wi, s.alpha, s.masking), s.lobe.pdf(wo, wi, s.alpha));
+    Some(Drawn { wi, cos_theta: facet.x, pdf, weight: facet.y * wi.z / pdf.max(1e-12) })
 }
 
 /// Normal bent toward the viewer in the plane in which the lobe is wide, which stretches the one lookup of the split

@@ -6,14 +6,22 @@ use super::super::bsdf::Bsdf;
 use super::super::point::Point;
 use super::super::waves::Waves;
 use super::*;
+use crate::material::ReflectionModel;
 use crate::math::sampling::Random;
 use crate::math::statistics::{SphereGrid, sidak, sphere_chi_square};
 use crate::scene::gallery::shape;
+use crate::surface::blinn_phong::Variant;
 use crate::trace::{Accel, Ray};
 
 /// The materials, and how wide their narrowest lobe is.
 fn cases() -> Vec<(&'static str, Material, f32)> {
     let metal = |roughness| even_metal(Vec3::new(0.9, 0.6, 0.3), roughness);
+    let power = |exponent, variant| Material {
+        reflection_model: ReflectionModel::BlinnPhong(variant),
+        exponent,
+        ..Material::default()
+    };
+    let dull = power(32.0, Variant::Exact);
     vec![
         ("matte", matte(Vec3::splat(0.5)), 1.0),
         ("metal", metal(0.5), 1.0),
@@ -22,6 +30,12 @@ fn cases() -> Vec<(&'static str, Material, f32)> {
         ("plastic", Material { roughness: 0.5, ..Material::default() }, 1.0),
         ("mixed", Material { metallic: 0.4, roughness: 0.6, base_color: Vec3::splat(0.5), ..Material::default() }, 1.0),
         ("coated", Material { coat: 0.7, coat_roughness: 0.5, ..metal(0.7) }, 1.0),
+        ("power of the cosine", Material { exponent: 5.0, metallic: 1.0, ..dull.clone() }, 1.0),
+        ("high power", Material { exponent: 1000.0, metallic: 1.0, ..dull.clone() }, 0.04),
+        ("plastic by a power", dull.clone(), 1.0),
+        ("coated power", Material { coat: 0.5, coat_roughness: 0.5, metallic: 0.7, ..dull }, 1.0),
+        ("microfacets by a power", Material { metallic: 1.0, ..power(20.0, Variant::Microfacet) }, 1.0),
+        ("older shader", power(20.0, Variant::Unnormalized), 1.0),
         ("coated plastic", Material { coat: 1.0, coat_roughness: 0.4, roughness: 0.8, ..Material::default() }, 1.0),
     ]
 }

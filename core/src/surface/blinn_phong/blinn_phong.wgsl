@@ -99,6 +99,50 @@ fn blinn_phong_facet(wo: vec3f, wi: vec3f, exponent: f32, variant: u32) -> vec2f
     return vec2f(half.w, value);
 }
 
+// Albedo of microfacets at normal incidence.
+fn blinn_phong_microfacet_peak(s: f32) -> f32 {
+    let half_ln2 = 0.34657359;
+    // (1 - 2^(-s/2)) / s, which is ln(2) / 2 at 0.
+    var ratio = half_ln2;
+    if s > 1e-3 {
+        ratio = blinn_phong_exp_rest(half_ln2 * s) / s;
+    }
+    return 2.0 - exp2(-0.5 * s) - (s + 2.0) * ratio;
+}
+
+// Share of light that the lobe returns toward the cosine mu when F = 1: fits.
+fn blinn_phong_albedo(mu: f32, exponent: f32, variant: u32) -> f32 {
+    let m = clamp(mu, 0.0, 1.0);
+    let s = blinn_phong_clamp_exponent(exponent);
+    let edge = exp2(-0.5 * s);
+    if variant == BLINN_PHONG_UNNORMALIZED {
+        let flat_part = pow(0.434 / sqrt(s + 0.753), 1.4175);
+        let steep = pow(1.0 - 0.5 * edge, 1.4175);
+        let root = flat_part + pow(m, 1.4686) * max(steep - flat_part, 0.0);
+        return 8.0 * PI / (s + 2.0) * pow(root, 1.0 / 1.4175);
+    }
+    if variant == BLINN_PHONG_MICROFACET {
+        let x = m * sqrt(s + 1.984);
+        let dip = pow(1.0 - m, 0.694) * x / (0.4125 * x * x * x + 3.518 * x + 0.819);
+        return 1.0 - dip - (1.0 - blinn_phong_microfacet_peak(s)) * pow(m, 0.748);
+    }
+    let x = m * sqrt(s + 0.167);
+    let bend = s / (s + 0.95) * (1.0 - exp(-1.307 * x - 0.148 * x * x)) * (1.0 + 0.28 * m);
+    let exact = (1.0 + m * m * (s - 1.0 + edge) + (1.0 - m * m) * bend) / (s + edge);
+    return exact * blinn_phong_normalizer(s, variant) / blinn_phong_normalizer(s, BLINN_PHONG_EXACT);
+}
+
+// Cosine-weighted mean of blinn_phong_albedo over the hemisphere; 0 for the unnormalised variant.
+fn blinn_phong_albedo_mean(exponent: f32, variant: u32) -> f32 {
+    let s = blinn_phong_clamp_exponent(exponent);
+    switch variant {
+        case BLINN_PHONG_APPROXIMATE: { return 0.5 * (s + 8.0) / (s + 4.0); }
+        case BLINN_PHONG_UNNORMALIZED: { return 0.0; }
+        case BLINN_PHONG_MICROFACET: { return (s + 2.56) / (s + 6.27); }
+        default: { return 0.5 * (s + 2.0) / (s + exp2(-0.5 * s)); }
+    }
+}
+
 // BRDF with the reflectance at the half vector, without the cosine.
 fn blinn_phong_eval(wo: vec3f, wi: vec3f, exponent: f32, variant: u32, fresnel: Fresnel) -> vec3f {
     let facet = blinn_phong_facet(wo, wi, exponent, variant);

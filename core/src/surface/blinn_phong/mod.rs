@@ -44,7 +44,7 @@ pub enum Variant {
     /// `(s + 2)(s + 4) / (8 pi (2^(-s/2) + s))`: returns all light at normal incidence, less elsewhere.
     #[default]
     Exact = EXACT,
-    /// `(s + 8) / (8 pi)`, as in many renderers: returns up to 7 % more light than it gets.
+    /// `(s + 8) / (8 pi)`, as in many renderers: returns up to 7.5 % more light than it gets, most at s = 9.
     Approximate = APPROXIMATE,
     /// Nothing, and no cosine of the light either: `kd (N.I) + ks (N.H)^n` of older shaders. Unbounded as a BRDF, and
     /// not reciprocal.
@@ -114,6 +114,55 @@ pub fn facet(wo: Vec3, wi: Vec3, exponent: f32, variant: Variant) -> Vec2 {
         Variant::Microfacet => 0.25 * lobe / (cos_theta * cos_theta),
     };
     Vec2::new(cos_theta, value)
+}
+
+/// Share of light that the lobe returns toward the cosine `mu` in [0, 1] when F = 1.
+///
+/// Fits to the integral over the upper hemisphere. Relative error for exponents up to the largest: exact and
+/// approximate 1.6 %, microfacet 4 %, unnormalised 12 % (for which it may exceed one). Away from the horizon the exact
+/// variant has `(mu^2 (s - 2) + 2) / (s + 2^(-s/2))`, and a smooth lobe depends on `mu sqrt(s)`.
+pub fn albedo(mu: f32, exponent: f32, variant: Variant) -> f32 {
+    let (mu, s) = (mu.clamp(0.0, 1.0), clamp_exponent(exponent));
+    let edge = (-0.5 * s).exp2();
+    match variant {
+        Variant::Exact | Variant::Approximate => {
+            let x = mu * (s + 0.167).sqrt();
+            let bend = s / (s + 0.95) * (1.0 - (-1.307 * x - 0.148 * x * x).exp()) * (1.0 + 0.28 * mu);
+            let exact = (1.0 + mu * mu * (s - 1.0 + edge) + (1.0 - mu * mu) * bend) / (s + edge);
+            exact * normalizer(s, variant) / normalizer(s, Variant::Exact)
+        }
+        Variant::Unnormalized => {
+            let grazing = 0.434 / (s + 0.753).sqrt();
+            let (flat, steep) = (grazing.powf(1.4175), (1.0 - 0.5 * edge).powf(1.4175));
+            let root = flat + mu.powf(1.4686) * (steep - flat).max(0.0);
+            4.0 * TAU / (s + 2.0) * root.powf(1.0 / 1.4175)
+        }
+        Variant::Microfacet => {
+            let x = mu * (s + 1.984).sqrt();
+            let dip = (1.0 - mu).powf(0.694) * x / (0.4125 * x * x * x + 3.518 * x + 0.819);
+            1.0 - dip - (1.0 - microfacet_peak(s)) * mu.powf(0.748)
+        }
+    }
+}
+
+/// Albedo of microfacets at normal incidence, `2 - 2^(-s/2) - (s + 2)/s (1 - 2^(-s/2))`.
+fn microfacet_peak(s: f32) -> f32 {
+    let half_ln2 = 0.5 * std::f32::consts::LN_2;
+    // (1 - 2^(-s/2)) / s, which is ln(2) / 2 at 0.
+    let ratio = if s > 1e-3 { -(-half_ln2 * s).exp_m1() / s } else { half_ln2 };
+    2.0 - (-0.5 * s).exp2() - (s + 2.0) * ratio
+}
+
+/// Cosine-weighted mean of [`albedo`] over the hemisphere: `(s + 2) / (2 (s + 2^(-s/2)))` for the exact variant; for
+/// microfacets a fit, 0.02 off at most. The unnormalised variant shares no light with anything: 0.
+pub fn albedo_mean(exponent: f32, variant: Variant) -> f32 {
+    let s = clamp_exponent(exponent);
+    match variant {
+        Variant::Exact => 0.5 * (s + 2.0) / (s + (-0.5 * s).exp2()),
+        Variant::Approximate => 0.5 * (s + 8.0) / (s + 4.0),
+        Variant::Unnormalized => 0.0,
+        Variant::Microfacet => (s + 2.56) / (s + 6.27),
+    }
 }
 
 /// BRDF with the reflectance at the half vector, without the cosine. Blinn 1977.

@@ -34,13 +34,46 @@ fn layered_scatters_again(s: Surface) -> bool {
     return s.multiple_scattering && s.lobe == LAYERED_GGX;
 }
 
-// The dielectric's base: what the reflection leaves, counted by the GGX albedo for every lobe; older shaders add it whole
-// and without 1 / pi.
+// The dielectric's base: what the reflection leaves; older shaders add it whole and without 1 / pi.
 fn layered_matte(s: Surface, wo: vec3f, wi: vec3f) -> vec3f {
-    if s.lobe == BLINN_PHONG_UNNORMALIZED {
-        return select(vec3f(0.0), s.base_color, wo.z > 0.0 && wi.z > 0.0);
+    if s.lobe == LAYERED_GGX {
+        return dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
     }
-    return dielectric_base(wo, wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking);
+    if wo.z <= 0.0 || wi.z <= 0.0 {
+        return vec3f(0.0);
+    }
+    if s.lobe == BLINN_PHONG_UNNORMALIZED {
+        return s.base_color;
+    }
+    // The mean leaves out what grazing light gets more by f90, so that the whole stays below one.
+    let left_mean = 1.0 - layered_strongest(s) * blinn_phong_albedo_mean(s.exponent, s.lobe);
+    return lambert_eval(s.base_color) * (layered_left(s, wo) * layered_left(s, wi) / max(left_mean, 1e-6));
+}
+
+fn layered_strongest(s: Surface) -> f32 {
+    return max(s.dielectric_f0.x, max(s.dielectric_f0.y, s.dielectric_f0.z));
+}
+
+// Share of light that the lobe returns toward w when F = 1: exact for GGX, fitted for others.
+fn layered_lobe_albedo(s: Surface, w: vec3f) -> f32 {
+    if s.lobe == LAYERED_GGX {
+        return 1.0 - ggx_loss(w, s.alpha, s.masking);
+    }
+    return blinn_phong_albedo(w.z, s.exponent, s.lobe);
+}
+
+// Share of the light from w that the dielectric's reflection leaves to its base, in [0, 1].
+fn layered_left(s: Surface, w: vec3f) -> f32 {
+    let mean = mix(layered_strongest(s), s.dielectric_f90, ggx_schlick_ratio(w, s.alpha, s.masking));
+    return max(1.0 - layered_lobe_albedo(s, w) * mean, 0.0);
+}
+
+// Share of even light that the dielectric's base sends toward wo, about; older shaders count it without 1 / pi.
+fn layered_matte_albedo(s: Surface, wo: vec3f) -> vec3f {
+    if s.lobe == BLINN_PHONG_UNNORMALIZED {
+        return PI * s.base_color;
+    }
+    return layered_left(s, wo) * s.base_color;
 }
 
 // What metal and dielectric below the coat reflect at once: BRDF without the cosine. They share width and so the

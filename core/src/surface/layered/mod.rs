@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::fresnel::{Fresnel, schlick};
 use super::ggx::{self, Masking, albedo};
-use super::{blinn_phong, coat, dielectric};
+use super::{blinn_phong, coat, dielectric, lambert};
 use crate::leaf::Leaf;
 
 /// The WGSL twin.
@@ -53,6 +53,22 @@ impl Lobe {
         }
     }
 
+    /// A direction of light for `wo`, [`ggx::sample_wi`] or [`blinn_phong::sample_wi`]; `u` in `[0, 1)^2`.
+    pub fn sample_wi(self, wo: Vec3, alpha: Vec2, u: Vec2) -> Option<Vec3> {
+        match self {
+            Lobe::Ggx => ggx::sample_wi(wo, alpha, u),
+            Lobe::BlinnPhong { exponent, variant } => blinn_phong::sample_wi(wo, exponent, variant, u),
+        }
+    }
+
+    /// Its density per steradian.
+    pub fn pdf(self, wo: Vec3, wi: Vec3, alpha: Vec2) -> f32 {
+        match self {
+            Lobe::Ggx => ggx::pdf(wo, wi, alpha),
+            Lobe::BlinnPhong { exponent, variant } => blinn_phong::pdf(wo, wi, exponent, variant),
+        }
+    }
+
     /// The cosine at the half vector and the BRDF for F = 1, as [`ggx::microfacet`] and [`blinn_phong::facet`].
     pub fn facet(self, wo: Vec3, wi: Vec3, alpha: Vec2, masking: Masking) -> Vec2 {
         match self {
@@ -69,8 +85,8 @@ pub struct Surface<'a> {
     pub base_color: Vec3,
     /// 0 dielectric to 1 metal.
     pub metallic: f32,
-    /// GGX widths along local x and y of the base; for other lobes those of [`Lobe::alpha`], by which reflection and
-    /// matte part share the light.
+    /// GGX widths along local x and y of the base; for other lobes those of [`Lobe::alpha`], which stand for them where
+    /// tables are looked up.
     pub alpha: Vec2,
     /// How the base reflects.
     pub lobe: Lobe,
@@ -93,12 +109,6 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// True where the base of the dielectric is added as older shaders did: all of it, and without 1 / pi. Else it gets what
-    /// the reflection leaves, counted by the GGX albedo for every lobe.
-    fn adds_base_whole(&self) -> bool {
-        matches!(self.lobe, Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. })
-    }
-
     /// True where the metal returns light that scattered more than once.
     pub fn scatters_again(&self) -> bool {
         self.multiple_scattering && self.lobe == Lobe::Ggx
@@ -147,13 +157,7 @@ impl Spread {
             metal = s.metallic * ggx::multiple_toward(wo, s.alpha, s.fresnel_mean, s.masking);
         }
         if s.metallic < 1.0 {
-            let toward = match s.adds_base_whole() {
-                true => s.base_color,
-                false => {
-                    dielectric::base_toward(wo, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking)
-                }
-            };
-            matte = (1.0 - s.metallic) * toward;
+            matte = (1.0 - s.metallic) * matte_toward(s, wo);
         }
         Spread { metal, matte }
     }
@@ -168,13 +172,52 @@ impl Spread {
             value += self.metal * albedo::loss(wi, s.alpha, s.masking);
         }
         if self.matte != Vec3::ZERO {
-            let left = match s.adds_base_whole() {
-                true => 1.0,
-                false => dielectric::left(wi, s.alpha, s.dielectric_f0, s.dielectric_f90, s.masking),
-            };
-            value += self.matte * left;
+            value += self.matte * left(s, wi);
         }
         value
+    }
+}
+
+/// The dielectric's base toward `wo` over what the reflection leaves of the light; older shaders add it without 1 / pi.
+fn matte_toward(s: &Surface, wo: Vec3) -> Vec3 {
+    match s.lobe {
+        Lobe::Ggx => dielectric::base_toward(wo, s.alpha, s.dielectric_f0, s.dielectric_f90, s.base_color, s.masking),
+        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } => s.base_color,
+        Lobe::BlinnPhong { exponent, variant } => {
+            // The mean leaves out what grazing light gets more by f90, so that the whole stays below one.
+            let left_mean = 1.0 - s.dielectric_f0.max_element() * blinn_phong::albedo_mean(exponent, variant);
+            lambert::eval(s.base_color) * (left(s, wo) / left_mean.max(1e-6))
+        }
+    }
+}
+
+/// Share of the light from `w` that the dielectric's reflection leaves to its base, in [0, 1].
+fn left(s: &Surface, w: Vec3) -> f32 {
+    match s.lobe {
+        Lobe::Ggx => dielectric::left(w, s.alpha, s.dielectric_f0, s.dielectric_f90, s.masking),
+        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } => 1.0,
+        Lobe::BlinnPhong { exponent, variant } => {
+            let strongest = s.dielectric_f0.max_element();
+            let ratio = albedo::schlick_ratio(w, s.alpha, s.masking);
+            let mean = strongest + (s.dielectric_f90 - strongest) * ratio;
+            (1.0 - blinn_phong::albedo(w.z, exponent, variant) * mean).max(0.0)
+        }
+    }
+}
+
+/// Share of light that the lobe returns toward `w` when F = 1: tabulated for GGX, fitted for others.
+pub fn lobe_albedo(s: &Surface, w: Vec3) -> f32 {
+    match s.lobe {
+        Lobe::Ggx => 1.0 - albedo::loss(w, s.alpha, s.masking),
+        Lobe::BlinnPhong { exponent, variant } => blinn_phong::albedo(w.z, exponent, variant),
+    }
+}
+
+/// Share of even light that the dielectric's base sends toward `wo`, about; older shaders count it without 1 / pi.
+pub fn matte_albedo(s: &Surface, wo: Vec3) -> Vec3 {
+    match s.lobe {
+        Lobe::BlinnPhong { variant: blinn_phong::Variant::Unnormalized, .. } => std::f32::consts::PI * s.base_color,
+        _ => left(s, wo) * s.base_color,
     }
 }
 

@@ -62,6 +62,8 @@ fn surface_of(t: Texel, m: MaterialData) -> Surface {
     s.base_color = t.base_color;
     s.metallic = t.metallic;
     s.alpha = t.alpha;
+    s.lobe = m.flags >> MATERIAL_LOBE_SHIFT;
+    s.exponent = t.exponent;
     s.dielectric_f0 = t.dielectric_f0;
     s.dielectric_f90 = t.dielectric_f90;
     s.coat = t.coat;

@@ -236,8 +236,14 @@ fn resolve(in: VertexOut, front_facing: bool) -> Texel {
     let strength = clamp(m.anisotropy * s.anisotropy.z, 0.0, 1.0);
     let alpha = roughness * roughness;
     texel.alpha = max(vec2f(mix(alpha, 1.0, strength * strength), alpha), vec2f(GGX_ALPHA_MIN));
+    texel.exponent = m.exponent;
+    let is_ggx = (m.flags >> MATERIAL_LOBE_SHIFT) == LAYERED_GGX;
+    if !is_ggx {
+        texel.alpha = vec2f(blinn_phong_alpha(m.exponent));
+    }
     if lost > 0.0 {
         texel.alpha = micro_normal_widened(texel.alpha, m.micro_depth, lost);
+        texel.exponent = select(blinn_phong_exponent(texel.alpha.x), 0.0, is_ggx);
     }
     texel.metallic = select(clamp(m.metallic * s.metallic, 0.0, 1.0), 1.0, (m.flags & MATERIAL_PRESET) != 0u);
     texel.base_color = clamp(base, vec3f(0.0), vec3f(1.0));

@@ -13,6 +13,8 @@ struct Texel {
     metallic: f32,
     // GGX width along tangent and bitangent.
     alpha: vec2f,
+    // Of the lobe, where it is not GGX.
+    exponent: f32,
     occlusion: f32,
     coat: f32,
     coat_alpha: f32,
@@ -54,7 +56,7 @@ fn texel_pack(t: Texel) -> Packed {
             pack2x16unorm(t.dielectric_f0.xy),
             pack2x16unorm(vec2f(t.dielectric_f0.z, t.dielectric_f90)),
         ),
-        vec4u(pack2x16snorm(oct_encode(t.coat_normal)), 0u, 0u, 0u),
+        vec4u(pack2x16snorm(oct_encode(t.coat_normal)), bitcast<u32>(t.exponent), 0u, 0u),
     );
 }
 
@@ -75,6 +77,7 @@ fn texel_unpack(p: Packed) -> Texel {
     t.base_color = vec3f(base_rg, base_b_metallic.x);
     t.metallic = base_b_metallic.y;
     t.alpha = unpack2x16unorm(p.words1.z);
+    t.exponent = bitcast<f32>(p.words3.y);
     t.occlusion = occlusion_coat.x;
     t.coat = occlusion_coat.y;
     t.coat_alpha = emission_b_coat_alpha.y;

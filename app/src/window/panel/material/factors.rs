@@ -2,7 +2,7 @@
 
 use burnish_core::document::MaterialEntry;
 use burnish_core::material::params::{self, PARAMS};
-use burnish_core::material::{AlphaMode, Material};
+use burnish_core::material::{AlphaMode, Material, ReflectionModel};
 use burnish_core::param::{self, ParamSpec, ParamValue};
 use burnish_core::surface::micro_normal;
 use eframe::egui;
@@ -22,6 +22,7 @@ const GROUPS: &[Group] = &[
     Group { title: "Base", keys: &["base-color"], open: true },
     Group { title: "Metal and roughness", keys: &["metallic", "roughness"], open: true },
     Group { title: "Anisotropy", keys: &["anisotropy", "anisotropy-rotation"], open: true },
+    Group { title: "Reflection model", keys: &["reflection-model", "exponent"], open: false },
     Group { title: "Bumps", keys: &["micro-normal", "micro-size", "micro-depth"], open: false },
     Group { title: "Coat", keys: &["coat", "coat-roughness", "coat-normal-scale"], open: false },
     Group { title: "Dielectric", keys: &["ior", "specular", "specular-color"], open: false },
@@ -71,7 +72,9 @@ fn shown(entry: &MaterialEntry, material: &Material, key: &str) -> Option<ParamV
 fn counts(key: &str, entry: &MaterialEntry, material: &Material) -> bool {
     match key {
         "base-color" | "metallic" => entry.preset.is_none(),
-        "anisotropy-rotation" => material.anisotropy > 0.0,
+        "roughness" | "anisotropy" => material.reflection_model == ReflectionModel::Ggx,
+        "anisotropy-rotation" => material.reflection_model == ReflectionModel::Ggx && material.anisotropy > 0.0,
+        "exponent" => material.reflection_model != ReflectionModel::Ggx,
         "micro-size" | "micro-depth" => material.micro_normal != micro_normal::Kind::None,
         "coat-roughness" | "coat-normal-scale" => material.coat > 0.0,
         "ior" | "specular" | "specular-color" => entry.preset.is_none() && material.metallic < 1.0,

@@ -1,7 +1,7 @@
 //! The wgpu renderer of Burnish: one code path with and without a window.
 //!
 //! [`Gpu`] opens an adapter or takes a window's, [`Renderer`] holds a scene on it and draws [`View`]s into linear
-//! pictures, [`Viewport`] keeps one on a screen up to date. Lighting formulas live in `burnish-core` as leaves; here are
+//! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere. Lighting formulas live in `burnish-core` as leaves; here are
 //! the passes that join and run them.
 
 pub mod device;
@@ -10,6 +10,7 @@ mod frame;
 pub mod layout;
 pub mod pass;
 mod passes;
+mod plate;
 pub mod readback;
 pub mod renderer;
 mod resident;
@@ -23,5 +24,6 @@ pub mod viewport;
 pub use device::{AdapterReport, Gpu, GpuError, adapters};
 pub use error::RenderError;
 pub use passes::Passes;
+pub use plate::Plate;
 pub use renderer::{Renderer, View};
 pub use viewport::{Drawn, Frame, Picked, Viewport};

@@ -9,6 +9,8 @@ mod bumps;
 mod environment;
 #[path = "images/losses.rs"]
 mod losses;
+#[path = "images/plate.rs"]
+mod plate;
 #[path = "images/viewport.rs"]
 mod viewport;
 
@@ -44,6 +46,7 @@ fn main() {
     trials.extend(bumps::trials());
     trials.extend(environment::trials());
     trials.extend(losses::trials());
+    trials.extend(plate::trials());
     trials.extend(viewport::trials());
     libtest_mimic::run(&arguments, trials).exit();
 }

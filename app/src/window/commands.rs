@@ -62,6 +62,8 @@ pub enum Command {
     Orthographic,
     /// Keeps the point of view.
     SaveCamera,
+    /// The reference instead of the live picture.
+    Reference,
     /// What importers said.
     Notices,
     /// Shows a panel or puts it away.
@@ -214,6 +216,13 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::View, Command::ViewTop, "Top view", key(Key::Num7), "Look from above."),
     entry(Menu::View, Command::Orthographic, "Orthographic", key(Key::Num5), "Parallel or perspective."),
     entry(Menu::View, Command::SaveCamera, "Save camera", None, "Keep this point of view."),
+    entry(
+        Menu::View,
+        Command::Reference,
+        "Path-traced reference",
+        key(Key::R),
+        "Show the path-traced reference instead of the live picture; it refines while nothing changes.",
+    ),
     panel(Pane::Viewport, "Viewport panel", "Show the picture or put it away."),
     panel(Pane::Scene, "Scene panel", "Show the objects or put them away."),
     panel(Pane::Material, "Material panel", "Show the material's factors or put them away."),
@@ -247,6 +256,7 @@ impl Entry {
                 | Command::Hide
                 | Command::ViewFront
                 | Command::SaveCamera
+                | Command::Reference
                 | Command::Panel(Pane::Viewport)
                 | Command::ScaleUp
                 | Command::ThemeSystem

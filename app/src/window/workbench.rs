@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use burnish_core::document;
-use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
 use super::commands::{Command, Entry, Menu, TABLE};
@@ -11,6 +11,7 @@ use super::files::{Files, Folders, is_table};
 use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
+use super::reference::Reference;
 use super::request::{Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
@@ -41,6 +42,7 @@ pub struct Workbench {
     session: Session,
     preferences: Preferences,
     stage: Stage,
+    reference: Reference,
     panels: Panels,
     tree: Tree<Pane>,
     /// The layout differs from that of the preferences.
@@ -76,6 +78,7 @@ impl Workbench {
             rearranged: false,
             preferences,
             stage,
+            reference: Reference::default(),
             panels: Panels::default(),
             start: start.then(StartPage::default),
             status: StatusLine::default(),
@@ -160,6 +163,11 @@ impl Workbench {
         &self.stage
     }
 
+    /// The path-traced reference.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
     /// The source of the picture, for trials of its faults.
     pub fn stage_mut(&mut self) -> &mut Stage {
         &mut self.stage
@@ -170,12 +178,16 @@ impl Workbench {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
         let revision = self.session.revision;
+        if ui.input(is_used) {
+            self.reference.note_input();
+        }
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
         let Workbench {
             session,
             preferences,
             stage,
+            reference,
             panels,
             tree,
             start,
@@ -187,7 +199,8 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
-        let rests = stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
+        let rests = reference.shown().is_some()
+            || stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
         if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
             requests.push(Request::Error(fault));
         }
@@ -197,7 +210,7 @@ impl Workbench {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }
         }
-        let mut context = Context { session, preferences, stage, requests, own, thumbnails };
+        let mut context = Context { session, preferences, stage, reference, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);
@@ -228,8 +241,10 @@ impl Workbench {
         }
         self.toasts.ui(ui.ctx(), middle);
         self.keep_layout(ui.ctx());
+        self.reference.end_frame();
         // The picture was drawn before the panel that changed it.
         if self.session.revision != revision {
+            self.reference.note_input();
             ui.ctx().request_repaint();
         }
     }
@@ -306,6 +321,7 @@ impl Workbench {
         match command {
             Command::Panel(pane) => Some(layout::is_shown(&self.tree, pane)),
             Command::Orthographic => Some(self.session.document().view.camera.orthographic),
+            Command::Reference => Some(self.reference.is_on()),
             Command::ThemeSystem => Some(self.preferences.dark.is_none()),
             Command::ThemeLight => Some(self.preferences.dark == Some(false)),
             Command::ThemeDark => Some(self.preferences.dark == Some(true)),
@@ -327,7 +343,9 @@ impl Workbench {
             | Command::SaveAs
             | Command::SaveImage
             | Command::Notices
-            | Command::Quit => self.files.command(command, &mut self.session, &self.stage, ctx),
+            | Command::Quit => {
+                self.files.command(command, &mut self.session, (&self.stage, &self.reference), ctx);
+            }
             Command::Frame
             | Command::FrameAll
             | Command::ViewFront
@@ -349,6 +367,7 @@ impl Workbench {
                 self.show_panel(Pane::Scene);
                 self.panels.scene.rename(&self.session);
             }
+            Command::Reference => self.reference.switch(!self.reference.is_on()),
             Command::Panel(pane) => {
                 layout::toggle(&mut self.tree, pane);
                 self.rearranged = true;
@@ -423,4 +442,14 @@ impl Workbench {
             self.requests.push(Request::Command(entry.command));
         }
     }
+}
+
+/// Someone uses mouse or keyboard; moving the pointer alone does not count.
+fn is_used(input: &egui::InputState) -> bool {
+    let counts = |event: &Event| match event {
+        Event::PointerMoved(_) | Event::MouseMoved(_) => input.pointer.any_down(),
+        Event::PointerGone | Event::WindowFocused(_) => false,
+        _ => true,
+    };
+    input.events.iter().any(counts)
 }

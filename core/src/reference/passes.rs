@@ -1,8 +1,8 @@
 //! Passes over a film: tiles on the threads of the caller's pool, with pause and cancel.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -23,6 +23,9 @@ const NAP: Duration = Duration::from_millis(2);
 pub struct Control {
     handle: Handle,
     paused: Arc<AtomicBool>,
+    /// There may be time left in `rest`.
+    resting: Arc<AtomicBool>,
+    rest: Arc<Mutex<Option<Instant>>>,
     rays: Arc<AtomicU64>,
     /// Paths of the running pass that are done.
     done: Arc<AtomicU64>,
@@ -59,6 +62,13 @@ impl Control {
         self.paused.store(paused, Ordering::Relaxed);
     }
 
+    /// Lets the threads rest until a moment, from which they go on by themselves. A later call counts instead.
+    pub fn rest_until(&self, end: Instant) {
+        let mut rest = self.rest.lock().unwrap_or_else(PoisonError::into_inner);
+        *rest = Some(end);
+        self.resting.store(true, Ordering::Relaxed);
+    }
+
     /// Fraction of the running pass that is done, 0 to 1.
     pub fn progress(&self) -> f32 {
         self.handle.progress()
@@ -69,12 +79,23 @@ impl Control {
         self.rays.load(Ordering::Relaxed)
     }
 
-    /// Waits while paused; false when the work is to end.
+    /// Waits while paused or resting; false when the work is to end.
     fn goes_on(&self) -> bool {
-        while self.paused.load(Ordering::Relaxed) && !self.is_cancelled() {
+        while (self.paused.load(Ordering::Relaxed) || self.rests()) && !self.is_cancelled() {
             std::thread::sleep(NAP);
         }
         !self.is_cancelled()
+    }
+
+    fn rests(&self) -> bool {
+        if !self.resting.load(Ordering::Relaxed) {
+            return false;
+        }
+        // Under the lock: a rest that is ordered meanwhile is not lost.
+        let rest = self.rest.lock().unwrap_or_else(PoisonError::into_inner);
+        let over = rest.is_none_or(|end| Instant::now() >= end);
+        self.resting.store(!over, Ordering::Relaxed);
+        !over
     }
 
     fn start(&self) {

@@ -103,6 +103,22 @@ fn a_paused_pass_waits_and_goes_on_and_a_cancel_ends_the_wait() {
 }
 
 #[test]
+fn a_resting_pass_goes_on_by_itself_and_the_last_order_counts() {
+    let control = Control::default();
+    let (start, rest) = (Instant::now(), 20 * NAP);
+    control.rest_until(start + Duration::from_secs(600));
+    control.rest_until(start + rest);
+    assert_eq!(trace_with(&mut Film::new(UVec2::splat(4)), 1, &control, path), Pass::Whole);
+    assert!(start.elapsed() >= rest, "{:?}", start.elapsed());
+    control.rest_until(Instant::now() + Duration::from_secs(600));
+    std::thread::scope(|scope| {
+        let resting = scope.spawn(|| trace_with(&mut Film::new(UVec2::splat(4)), 1, &control, path));
+        control.cancel();
+        assert_eq!(resting.join().unwrap(), Pass::Cancelled);
+    });
+}
+
+#[test]
 fn the_first_sample_that_is_not_finite_is_named_whatever_thread_found_it() {
     let bad = [(UVec2::new(30, 30), 1), (UVec2::new(31, 2), 1), (UVec2::new(3, 3), 2)];
     let broken = |pixel: UVec2, index| {

@@ -7,15 +7,23 @@ mod bench;
 mod import;
 mod looks;
 mod monkey;
+mod reference;
 mod snapshot;
 mod workflow;
 
 use libtest_mimic::Arguments;
 
 fn main() {
-    let trials = [workflow::trials(), import::trials(), looks::trials(), monkey::trials(), snapshot::trials()]
-        .into_iter()
-        .flatten()
-        .collect();
+    let trials = [
+        workflow::trials(),
+        import::trials(),
+        looks::trials(),
+        monkey::trials(),
+        reference::trials(),
+        snapshot::trials(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }

@@ -1,4 +1,4 @@
-//! The picture as a file: its settings, and the job that renders it.
+//! The picture as a file: its settings, and the job that renders it or writes the reference.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use eframe::egui;
 use glam::UVec2;
 
 use super::load::name_of;
+use crate::window::reference::Look;
 use crate::window::session::Session;
 
 /// Most pixels on a side, as on the command line.
@@ -28,17 +29,41 @@ pub struct ImageSettings {
     frames: u32,
     /// Size of the viewport.
     natural: UVec2,
+    /// Size of the reference where the viewport shows it.
+    traced: Option<UVec2>,
+    /// It is what is written.
+    as_shown: bool,
 }
 
 impl ImageSettings {
-    /// A picture of the viewport's size.
-    pub fn new(viewport: Option<UVec2>) -> ImageSettings {
+    /// A picture of the viewport's size, or the reference where it is shown.
+    pub fn new(viewport: Option<UVec2>, traced: Option<UVec2>) -> ImageSettings {
         let natural = viewport.filter(|size| size.min_element() > 0).unwrap_or(DEFAULT_SIZE);
-        ImageSettings { size: natural, frames: 16, natural }
+        ImageSettings { size: natural, frames: 16, natural, traced, as_shown: traced.is_some() }
     }
 
     /// Shows the settings.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
+        if let Some(size) = self.traced {
+            ui.horizontal(|ui| {
+                let hover = "The path-traced picture with the samples that it has now.";
+                ui.radio_value(&mut self.as_shown, true, "Reference, as shown").on_hover_text(hover);
+                let hover = "Rendered anew by the lighting method, in any size.";
+                ui.radio_value(&mut self.as_shown, false, "Live picture").on_hover_text(hover);
+            });
+            if self.as_shown {
+                ui.weak(format!("{} x {} pixels. In any size: burnish render --method reference.", size.x, size.y));
+            } else {
+                self.live_ui(ui);
+            }
+        } else {
+            self.live_ui(ui);
+        }
+        ui.weak(".png: as on the screen, with its view transform noted.  .exr: linear radiance.");
+    }
+
+    /// Size and quality of a picture that is rendered.
+    fn live_ui(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             let mut side = |label: &str, value: &mut u32| {
                 let label = ui.label(label);
@@ -65,18 +90,42 @@ impl ImageSettings {
         });
         // Kept within what an adapter takes, at the same width.
         self.size.y = self.size.y.min(MAX_PIXELS / self.size.x.max(1)).max(1);
-        ui.weak(".png: as on the screen, with its view transform noted.  .exr: linear radiance.");
     }
 }
 
+/// Work that ends with what to tell.
+type Writing = Job<Result<String, String>>;
+
+/// Starts to write the picture that was asked for. Refuses where there is no whole reference.
+pub fn start(
+    session: &Session,
+    (passes, look): (Option<&Arc<Passes>>, Option<&Look>),
+    settings: ImageSettings,
+    path: PathBuf,
+    ctx: &egui::Context,
+) -> Result<Writing, String> {
+    if !settings.as_shown {
+        return Ok(render(session, passes, settings, path, ctx));
+    }
+    let look = look.filter(|look| look.whole_size().is_some());
+    let picture =
+        look.ok_or("the reference has no whole picture yet; wait for its first sample, then save")?.picture.clone();
+    let view = &session.document().view;
+    let (tone, exposure_ev) = (view.tone.parse().unwrap_or_default(), view.exposure_ev as f32);
+    let waker = ctx.clone();
+    let label = format!("Writing {}", name_of(&path.to_string_lossy()));
+    let work = move |_: &Handle| write(&picture, &path, tone, exposure_ev);
+    Ok(Job::spawn(label, move || waker.request_repaint(), work))
+}
+
 /// Starts to render the document's view into a file, on the window's device where there is one.
-pub fn render(
+fn render(
     session: &Session,
     passes: Option<&Arc<Passes>>,
     settings: ImageSettings,
     path: PathBuf,
     ctx: &egui::Context,
-) -> Job<Result<String, String>> {
+) -> Writing {
     let (document, scene) = (session.document(), session.scene().clone());
     let view = View {
         size: settings.size,

@@ -23,6 +23,7 @@ use eframe::egui;
 use super::commands::Command;
 use super::panel::Context;
 use super::preferences::Preferences;
+use super::reference::{Look, Reference};
 use super::request::{Purpose, Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
@@ -222,7 +223,13 @@ impl Files {
     }
 
     /// Does a command about files.
-    pub fn command(&mut self, command: Command, session: &mut Session, stage: &Stage, ctx: &egui::Context) {
+    pub fn command(
+        &mut self,
+        command: Command,
+        session: &mut Session,
+        (stage, reference): (&Stage, &Reference),
+        ctx: &egui::Context,
+    ) {
         match command {
             Command::Open => self.open_dialog(Ask::Scene, session),
             Command::LoadEnvironment => self.open_dialog(Ask::Environment, session),
@@ -230,7 +237,8 @@ impl Files {
             Command::SaveAs => self.open_dialog(Ask::SaveAs(None), session),
             Command::SaveImage => {
                 let size = stage.status().map(|status| status.size);
-                self.open_dialog(Ask::SaveImage(ImageSettings::new(size)), session);
+                let traced = reference.shown().and_then(Look::whole_size);
+                self.open_dialog(Ask::SaveImage(ImageSettings::new(size, traced)), session);
             }
             Command::Notices => self.shows_notices = true,
             Command::Quit => self.leave(Next::Quit, session, ctx),
@@ -452,7 +460,11 @@ impl Files {
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
             Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
             Ask::SaveImage(settings) => {
-                self.picture = Some(image::render(context.session, context.stage.passes(), settings, path, ctx));
+                let Context { session, stage, reference, .. } = context;
+                match image::start(session, (stage.passes(), reference.shown()), settings, path, ctx) {
+                    Ok(job) => self.picture = Some(job),
+                    Err(reason) => self.outbox.push(Request::Error(reason)),
+                }
             }
         }
         ctx.request_repaint();

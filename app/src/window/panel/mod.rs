@@ -14,6 +14,7 @@ use eframe::egui::{self, WidgetText};
 use serde::{Deserialize, Serialize};
 
 use super::preferences::Preferences;
+use super::reference::Reference;
 use super::request::Requests;
 use super::session::Session;
 use super::stage::Stage;
@@ -38,6 +39,8 @@ pub struct Context<'a> {
     pub preferences: &'a mut Preferences,
     /// The picture.
     pub stage: &'a mut Stage,
+    /// The path-traced one.
+    pub reference: &'a mut Reference,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
     /// The user's presets.

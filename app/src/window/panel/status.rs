@@ -5,6 +5,7 @@ use burnish_core::scene::Scene;
 use eframe::egui::{self, Align, Layout, RichText};
 
 use super::Context;
+use crate::window::reference::{Look, percent};
 use crate::window::session::Session;
 use crate::window::stage::Status;
 
@@ -20,11 +21,19 @@ impl StatusLine {
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         let status = context.stage.status();
         ui.horizontal(|ui| {
-            for (text, hover) in status.map(picture).unwrap_or_default() {
+            let items = match context.reference.shown() {
+                Some(look) => traced(look),
+                None => status.map(picture).unwrap_or_default(),
+            };
+            for (text, hover) in items {
                 item_ui(ui, &text, hover);
             }
             item_ui(ui, &triangles(context.session.scene()), "Triangles of the visible objects.");
-            item_ui(ui, &filled_in(context.session), FILLED_HELP);
+            let filled = match context.reference.shown() {
+                Some(_) => "reference; all light: path traced".into(),
+                None => filled_in(context.session),
+            };
+            item_ui(ui, &filled, FILLED_HELP);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let adapter = status.map_or("no adapter", |status| &status.adapter);
                 let software = status.is_some_and(|status| status.software);
@@ -63,6 +72,20 @@ fn picture(status: &Status) -> Vec<(String, &'static str)> {
     ];
     if status.fixed_clock {
         items.remove(0);
+    }
+    items
+}
+
+/// What is wrong with the reference, if anything is.
+fn traced(look: &Look) -> Vec<(String, &'static str)> {
+    let mut items = Vec::new();
+    if look.clamped > 0.0 {
+        let text = format!("clamp takes {} of the light", percent(look.clamped));
+        items.push((text, "A clamped picture is no reference: set the clamp to 0 in the reference settings."));
+    }
+    if look.rejected > 0 {
+        let text = format!("{} samples left out", look.rejected);
+        items.push((text, "Samples that were not finite; they count as if they had not been drawn."));
     }
     items
 }

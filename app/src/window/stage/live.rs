@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use burnish_core::color::tone::ToneMap;
+use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, RenderError, Viewport};
+use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, Plate, RenderError, Viewport};
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -15,6 +17,8 @@ use super::{LossLog, Shown, Status, Trial};
 pub struct Live {
     render: RenderState,
     viewport: Viewport,
+    /// For pictures that are computed elsewhere.
+    plate: Plate,
     /// The view that egui knows, and as what.
     texture: Option<(wgpu::TextureView, TextureId)>,
     status: Status,
@@ -45,8 +49,10 @@ impl Live {
             software: gpu.is_software(),
             ..Status::default()
         };
+        let viewport = Viewport::new(gpu);
         Live {
-            viewport: Viewport::new(gpu),
+            plate: Plate::new(viewport.passes()),
+            viewport,
             render,
             texture: None,
             status,
@@ -65,6 +71,22 @@ impl Live {
 
     /// Draws what is due.
     pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        self.attempt(|live| live.try_draw(scene, frame))
+    }
+
+    /// Shows a picture that was computed elsewhere.
+    pub fn show(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+        let shown = self.attempt(|live| {
+            live.fail_for_trial()?;
+            live.plate.draw(picture, tone, exposure_ev)?;
+            live.present(live.plate.output().cloned());
+            Ok(())
+        });
+        // Whoever computes it tells when there is more.
+        Shown { settled: shown.texture.is_some(), ..shown }
+    }
+
+    fn attempt(&mut self, work: impl FnOnce(&mut Live) -> Result<(), RenderError>) -> Shown {
         if std::mem::take(&mut self.first) {
             // The window appears at once, its picture when the shaders are compiled.
             return Shown::default();
@@ -74,19 +96,23 @@ impl Live {
             Condition::Restart => return self.shown(Some("The graphics device was lost.".into()), false),
             Condition::GivenUp => return self.shown(Some(LossLog::GIVEN_UP.into()), false),
         }
-        match self.try_draw(scene, frame) {
+        match work(self) {
             Ok(()) => self.shown(None, false),
             Err(RenderError::Gpu(error)) => self.recover(&error),
             Err(error) => self.shown(Some(error.to_string()), false),
         }
     }
 
-    fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
+    fn fail_for_trial(&mut self) -> Result<(), GpuError> {
         match self.trial.take() {
-            Some(Trial::Call) => return Err(GpuError::Failed("a call, for trial".into()).into()),
-            Some(Trial::Device) => return Err(GpuError::Failed("device lost: for trial".into()).into()),
-            None => {}
+            Some(Trial::Call) => Err(GpuError::Failed("a call, for trial".into())),
+            Some(Trial::Device) => Err(GpuError::Failed("device lost: for trial".into())),
+            None => Ok(()),
         }
+    }
+
+    fn try_draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
+        self.fail_for_trial()?;
         self.viewport.set_scene(scene)?;
         let drawn = self.viewport.draw(frame)?;
         // Pictures at rest are drawn in parts, and a hand that holds still asks for nothing: neither is a measure.
@@ -95,13 +121,13 @@ impl Live {
         }
         self.status.size = frame.size;
         self.status.drawn = drawn;
-        self.show();
+        self.present(self.viewport.output().cloned());
         Ok(())
     }
 
     /// Makes egui know the picture.
-    fn show(&mut self) {
-        let Some(view) = self.viewport.output() else { return };
+    fn present(&mut self, view: Option<wgpu::TextureView>) {
+        let Some(view) = &view else { return };
         let filter = wgpu::FilterMode::Linear;
         let mut renderer = self.render.renderer.write();
         match &mut self.texture {
@@ -136,6 +162,7 @@ impl Live {
             // An error that no scope caught sticks to the device's first owner; the device itself draws on.
             let gpu = Gpu::from_parts(&self.render.adapter, self.render.device.clone(), self.render.queue.clone());
             self.viewport = Viewport::new(&gpu);
+            self.plate = Plate::new(self.viewport.passes());
         } else {
             self.condition = Condition::GivenUp;
         }

@@ -5,6 +5,8 @@ mod losses;
 
 use std::sync::Arc;
 
+use burnish_core::color::tone::ToneMap;
+use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
 use burnish_render::{Drawn, Frame, Passes};
 use eframe::egui::TextureId;
@@ -71,7 +73,15 @@ impl Stage {
         }
     }
 
-    /// The surface under a point of the picture, 0 to 1 from its top left.
+    /// Shows a picture that was computed elsewhere instead; it is repainted when there is another.
+    pub fn show(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+        match self {
+            Stage::Flat => Shown { settled: true, ..Shown::default() },
+            Stage::Live(live) => live.show(picture, tone, exposure_ev),
+        }
+    }
+
+    /// The surface under a point of the live picture, 0 to 1 from its top left.
     pub fn pick(&mut self, scene: &Scene, frame: &Frame, at: Vec2) -> Option<Picked> {
         match self {
             Stage::Flat => scene.pick(frame.camera.ray(at, frame.size.x as f32 / frame.size.y.max(1) as f32)),
@@ -79,7 +89,7 @@ impl Stage {
         }
     }
 
-    /// Scene-linear radiance under a point of the picture, 0 to 1 from its top left.
+    /// Scene-linear radiance under a point of the live picture, 0 to 1 from its top left.
     pub fn radiance(&mut self, at: Vec2) -> Option<Vec3> {
         match self {
             Stage::Flat => None,

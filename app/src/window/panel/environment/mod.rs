@@ -28,6 +28,9 @@ impl EnvironmentPanel {
         section(ui, "Camera", |ui| camera::ui(ui, context.session));
         section(ui, "Saved cameras", |ui| self.saved.ui(ui, context));
         section(ui, "Lighting method", |ui| lighting::ui(ui, context.session));
+        if context.reference.is_on() {
+            section(ui, "Reference settings", |ui| lighting::reference_ui(ui, context.session));
+        }
         section(ui, "Navigation", |ui| camera::navigation_ui(ui, context.preferences));
     }
 }

@@ -4,6 +4,7 @@ mod cameras;
 mod navigation;
 mod overlay;
 mod readout;
+mod switch;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::scene::Picked;
@@ -14,6 +15,7 @@ use glam::UVec2;
 
 use super::{Context, DraggedPreset};
 use crate::window::commands::Command;
+use crate::window::reference::{Look, Subject};
 use crate::window::request::Request;
 use crate::window::session::Session;
 use crate::window::stage::Shown;
@@ -86,16 +88,19 @@ impl ViewportPanel {
         self.click(&response, context, &frame);
         self.drop_preset(&response, context, &frame);
         // A click or a drop may have changed the scene: this frame shows it already.
-        let shown = context.stage.draw(context.session.scene(), &frame);
+        let (shown, part) = picture(ui.ctx(), context, &frame);
         match shown.texture {
             Some(texture) => {
-                let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(part.x, part.y));
                 ui.painter().image(texture, rect, uv, Color32::WHITE);
             }
             None => _ = ui.painter().rect_filled(rect, 0.0, FLAT),
         }
         self.overlay_ui(ui, &response, context, &frame, &shown);
         self.tell(&shown, context);
+        if let Some(secs) = context.reference.rests_for().filter(|_| context.reference.is_on()) {
+            ui.ctx().request_repaint_after_secs(secs as f32);
+        }
         if moving {
             ui.ctx().request_repaint_after_secs(MOVING_SECS as f32);
         } else if !shown.settled {
@@ -150,7 +155,7 @@ impl ViewportPanel {
         }
         let Some(pointer) = response.interact_pointer_pos() else { return };
         let at = overlay::relative(response.rect, pointer);
-        let picked = context.stage.pick(context.session.scene(), frame, at);
+        let picked = pick(context, frame, at);
         select(context.session, picked, self.held.shift);
         if response.double_clicked() && picked.is_some() {
             self.command(Command::Frame, context.session);
@@ -162,7 +167,7 @@ impl ViewportPanel {
         let Some(dropped) = response.dnd_release_payload::<DraggedPreset>() else { return };
         let Some(pointer) = response.ctx.pointer_latest_pos() else { return };
         let at = overlay::relative(response.rect, pointer);
-        let picked = context.stage.pick(context.session.scene(), frame, at);
+        let picked = pick(context, frame, at);
         let Some(material) = picked.and_then(|picked| material_of(context.session, picked)) else {
             context.requests.push(Request::Notice("There is no object there: drop the preset on one.".into()));
             return;
@@ -188,9 +193,12 @@ impl ViewportPanel {
         let pointer = response.hover_pos().filter(|_| shown.texture.is_some() && self.gesture.is_none());
         match pointer {
             Some(pointer) if !frame.moving => {
-                let place = (pointer, overlay::relative(rect, pointer));
-                let picture = (context.session.revision, shown.settled);
-                match self.readout.update(context.stage, place, picture, context.session.now_secs) {
+                let at = overlay::relative(rect, pointer);
+                let Context { session, stage, reference, .. } = context;
+                let look = reference.shown();
+                let picture = (session.revision, look.map_or(u64::from(shown.settled), Look::version));
+                let read = || look.map_or_else(|| stage.radiance(at), |look| look.radiance(at));
+                match self.readout.update(pointer, picture, session.now_secs, read) {
                     Ok(Some(radiance)) => {
                         let text = readout::text(radiance);
                         overlay::line_ui(ui, rect, Align2::LEFT_BOTTOM, &text, READOUT_HELP);
@@ -201,6 +209,7 @@ impl ViewportPanel {
             }
             _ => self.readout.clear(),
         }
+        switch::ui(ui, rect, context);
         if let Some(message) = &shown.message {
             overlay::message_ui(ui, rect, message);
         }
@@ -217,6 +226,36 @@ impl ViewportPanel {
             }
             self.told.clone_from(&shown.message);
         }
+    }
+}
+
+/// The reference where there is something of it and it is wanted, else the live picture; with the part of the texture
+/// that is the picture.
+fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Shown, glam::Vec2) {
+    let Context { session, stage, reference, .. } = context;
+    let scene = session.scene();
+    if !reference.is_on() {
+        return (stage.draw(scene, frame), glam::Vec2::ONE);
+    }
+    let subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
+    if let Some(look) = reference.look(subject, ctx) {
+        return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());
+    }
+    if let Some(fault) = reference.fault() {
+        let shown = stage.draw(scene, frame);
+        return (Shown { message: shown.message.or(Some(fault)), ..shown }, glam::Vec2::ONE);
+    }
+    // Quick frames only: whoever traces needs the processor, and wakes the window.
+    let shown = stage.draw(scene, &Frame { moving: true, ..frame.clone() });
+    (Shown { settled: shown.texture.is_some() || shown.settled, ..shown }, glam::Vec2::ONE)
+}
+
+/// The surface under a point of the picture. The live picture may be an older one while the reference is shown.
+fn pick(context: &mut Context<'_>, frame: &Frame, at: glam::Vec2) -> Option<Picked> {
+    let scene = context.session.scene();
+    match context.reference.is_on() {
+        true => scene.pick(frame.camera.ray(at, frame.size.x as f32 / frame.size.y.max(1) as f32)),
+        false => context.stage.pick(scene, frame, at),
     }
 }
 

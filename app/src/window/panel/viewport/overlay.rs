@@ -14,7 +14,7 @@ const MARK: f32 = 14.0;
 const HULL: usize = 96;
 const THINNED: usize = 20_000;
 /// Behind text over the picture.
-const SHADE: Color32 = Color32::from_black_alpha(150);
+pub const SHADE: Color32 = Color32::from_black_alpha(150);
 
 /// Points of selected meshes, so that a frame does not visit all their vertices.
 #[derive(Default)]

@@ -2,9 +2,7 @@
 
 use burnish_core::color::rgb;
 use eframe::egui::Pos2;
-use glam::{Vec2, Vec3};
-
-use crate::window::stage::Stage;
+use glam::Vec3;
 
 /// Seconds that the pointer must rest: reading a pixel makes the device wait.
 const REST_SECS: f64 = 0.15;
@@ -13,8 +11,7 @@ const REST_SECS: f64 = 0.15;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     pointer: Pos2,
-    revision: u64,
-    settled: bool,
+    picture: (u64, u64),
 }
 
 /// A pixel that was read, and since when the pointer rests.
@@ -26,14 +23,14 @@ pub struct Readout {
 }
 
 impl Readout {
-    /// Reads the pixel under a resting pointer; `at` is its place in the picture, 0 to 1. Returns the radiance, or the
-    /// seconds after which to ask again.
+    /// Reads the pixel under a resting pointer; `picture` says which revision of the document and which version of its
+    /// picture it is. Returns the radiance, or the seconds after which to ask again.
     pub fn update(
         &mut self,
-        stage: &mut Stage,
-        (pointer, at): (Pos2, Vec2),
-        (revision, settled): (u64, bool),
+        pointer: Pos2,
+        picture: (u64, u64),
         now_secs: f64,
+        read: impl FnOnce() -> Option<Vec3>,
     ) -> Result<Option<Vec3>, f64> {
         if self.pointer != Some(pointer) {
             *self = Readout { pointer: Some(pointer), rests_since: now_secs, read: None };
@@ -42,9 +39,9 @@ impl Readout {
         if rested < REST_SECS {
             return Err(REST_SECS - rested);
         }
-        let key = Key { pointer, revision, settled };
+        let key = Key { pointer, picture };
         if self.read.is_none_or(|(known, _)| known != key) {
-            self.read = stage.radiance(at).map(|radiance| (key, radiance));
+            self.read = read().map(|radiance| (key, radiance));
         }
         Ok(self.read.map(|(_, radiance)| radiance))
     }
@@ -85,11 +82,13 @@ mod tests {
 
     #[test]
     fn a_pointer_is_asked_to_rest_before_a_pixel_is_read() {
-        let (mut readout, mut stage) = (Readout::default(), Stage::Flat);
-        let place = (Pos2::new(10.0, 10.0), Vec2::splat(0.5));
-        assert!(readout.update(&mut stage, place, (0, true), 1.0).is_err());
-        assert_eq!(readout.update(&mut stage, place, (0, true), 1.2), Ok(None));
-        let moved = (Pos2::new(11.0, 10.0), Vec2::splat(0.5));
-        assert!(readout.update(&mut stage, moved, (0, true), 1.3).is_err());
+        let (mut readout, read) = (Readout::default(), || Some(Vec3::X));
+        let place = Pos2::new(10.0, 10.0);
+        assert!(readout.update(place, (0, 1), 1.0, read).is_err());
+        assert_eq!(readout.update(place, (0, 1), 1.2, read), Ok(Some(Vec3::X)));
+        let other = || Some(Vec3::Y);
+        assert_eq!(readout.update(place, (0, 1), 1.25, other), Ok(Some(Vec3::X)), "the same picture is read once");
+        assert_eq!(readout.update(place, (0, 2), 1.25, other), Ok(Some(Vec3::Y)));
+        assert!(readout.update(Pos2::new(11.0, 10.0), (0, 2), 1.3, read).is_err());
     }
 }

@@ -5,6 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 
 use super::*;
 use crate::window::preferences::{Navigation, Preferences};
+use crate::window::reference::Reference;
 use crate::window::request::Requests;
 use crate::window::stage::Stage;
 use crate::window::thumbnails::Thumbnails;
@@ -15,6 +16,7 @@ struct Bench {
     session: Session,
     preferences: Preferences,
     stage: Stage,
+    reference: Reference,
     requests: Requests,
 }
 
@@ -28,13 +30,14 @@ fn bench() -> Harness<'static, Bench> {
         session: session(),
         preferences: Preferences::default(),
         stage: Stage::Flat,
+        reference: Reference::default(),
         requests: Requests::new(),
     };
     let show = |ui: &mut egui::Ui, bench: &mut Bench| {
         bench.session.now_secs = ui.input(|input| input.time);
-        let Bench { panel, session, preferences, stage, requests } = bench;
+        let Bench { panel, session, preferences, stage, reference, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
-        panel.ui(ui, &mut Context { session, preferences, stage, requests, own, thumbnails });
+        panel.ui(ui, &mut Context { session, preferences, stage, reference, requests, own, thumbnails });
     };
     let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);
     harness.run_steps(2);

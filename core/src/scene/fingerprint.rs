@@ -237,11 +237,14 @@ impl Sponge {
             micro_normal,
             micro_size_mm,
             micro_depth,
+            reflection_model,
+            exponent,
         } = material;
         [base_color, emission, specular_color].into_iter().for_each(|color| self.color(*color));
         self.floats(&[*opacity, *metallic, *roughness, *normal_scale, *occlusion_strength, *ior, *specular]);
         self.floats(&[*coat, *coat_roughness, *coat_normal_scale, *anisotropy, *anisotropy_rotation]);
-        self.floats(&[*micro_size_mm, *micro_depth]);
+        self.floats(&[*micro_size_mm, *micro_depth, *exponent]);
+        self.count(reflection_model.index());
         self.word(*micro_normal as u32);
         self.flag(*double_sided);
         self.flag(*unlit);

@@ -62,6 +62,11 @@ fn free_of_the_gpu() -> Vec<Trial> {
             &[],
             reference::a_checkpoint_that_does_not_fit_is_refused,
         ),
+        trial(
+            "a checkpoint that cannot be written costs no picture",
+            &[],
+            reference::a_checkpoint_that_cannot_be_written_costs_no_picture,
+        ),
         trial("samples, time and error end a traced picture", &[], reference::every_end_ends_a_picture),
         trial(
             "the reference writes png and layers and reads settings",

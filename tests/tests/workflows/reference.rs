@@ -105,6 +105,21 @@ pub fn a_checkpoint_that_does_not_fit_is_refused() {
     trace(&file, &["--checkpoint", text(&folder)]).failed(INPUT, &["not a regular file"]);
 }
 
+pub fn a_checkpoint_that_cannot_be_written_costs_no_picture() {
+    let folder = scratch_folder("unwritable-checkpoint");
+    let (sky, file) = (sky(&folder), folder.join("x.exr"));
+    // Longer than file systems take names.
+    let checkpoint = folder.join("x".repeat(300));
+    let outcome = trace(&file, &["--env", &sky, "--samples", "2", "--checkpoint", text(&checkpoint)]);
+    assert_eq!(outcome.exit, RESOURCES, "{}", outcome.err);
+    let lines: Vec<&str> = outcome.err.lines().collect();
+    // After the first pass, and at the end.
+    let [first, .., last] = lines[..] else { panic!("{}", outcome.err) };
+    assert!(first.contains("cannot be written") && first.ends_with("the picture goes on without"), "{first}");
+    assert!(last.contains("cannot be written") && outcome.out.contains("wrote"), "{last} {}", outcome.out);
+    assert!(read_picture(&file).is_ok());
+}
+
 pub fn every_end_ends_a_picture() {
     let folder = scratch_folder("ends");
     let sky = sky(&folder);

@@ -3,7 +3,8 @@ use std::sync::Arc;
 use glam::{Mat3, Vec2, Vec4};
 
 use super::*;
-use crate::material::{Filter, TextureRole, Wrap};
+use crate::material::{Filter, ReflectionModel, TextureRole, Wrap};
+use crate::surface::blinn_phong::Variant;
 use crate::surface::fresnel::{Fresnel, TABLE_SIZE};
 use crate::surface::micro_normal;
 
@@ -89,6 +90,8 @@ fn changes() -> Vec<Change> {
     material(|m| m.micro_normal = micro_normal::Kind::Hammered);
     material(|m| m.micro_size_mm = 0.5);
     material(|m| m.micro_depth = 0.5);
+    material(|m| m.reflection_model = ReflectionModel::BlinnPhong(Variant::Exact));
+    material(|m| m.exponent = 8.0);
     material(|m| m.reflectance = Reflectance::BaseColor);
     let mut curve = |f: fn() -> Fresnel| {
         let change = move |s: &mut Scene| {

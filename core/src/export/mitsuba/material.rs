@@ -9,7 +9,7 @@ use super::{Options, element_name};
 use crate::export::{Folder, Loss};
 use crate::file::FileError;
 use crate::material::preset::Preset;
-use crate::material::{AlphaMode, Material, Reflectance, TextureRef};
+use crate::material::{AlphaMode, Material, Reflectance, ReflectionModel, TextureRef};
 use crate::scene::Scene;
 use crate::surface::micro_normal;
 
@@ -150,6 +150,9 @@ impl Writer<'_, '_> {
                 self.note(Loss::Dropped, "the colours of vertices of an unlit surface");
             }
             return;
+        }
+        if m.reflection_model != ReflectionModel::Ggx {
+            self.note(Loss::Approximated, "GGX with the same peak stands for its Blinn-Phong reflection");
         }
         if m.coat > 0.0 {
             self.note(Loss::Dropped, "the clear coat");

@@ -8,7 +8,7 @@ use super::texture::Use;
 use super::xml::Element;
 use crate::export::Loss;
 use crate::file::FileError;
-use crate::material::{Reflectance, TextureRef};
+use crate::material::{Reflectance, ReflectionModel, TextureRef};
 use crate::surface::fresnel::Fresnel;
 use crate::surface::{dielectric, ggx};
 
@@ -41,7 +41,7 @@ impl Writer<'_, '_> {
     /// Widths by the factors alone.
     fn alpha(&self) -> Vec2 {
         let alpha = self.material.roughness.powi(2);
-        Vec2::new(alpha + (1.0 - alpha) * self.stretch(), alpha)
+        self.material.lobe().alpha(Vec2::new(alpha + (1.0 - alpha) * self.stretch(), alpha))
     }
 
     fn stretch(&self) -> f32 {
@@ -51,7 +51,8 @@ impl Writer<'_, '_> {
     /// The roughness texture, where texels differ; else the widths that it and the factors make.
     fn width(&mut self) -> (Vec2, Option<TextureRef>) {
         let m = self.material;
-        let Some(texture) = self.used(m.metallic_roughness_texture) else { return (self.alpha(), None) };
+        let rough = m.metallic_roughness_texture.filter(|_| m.reflection_model == ReflectionModel::Ggx);
+        let Some(texture) = self.used(rough) else { return (self.alpha(), None) };
         let purpose = |stretch| Use::Alpha { factor: m.roughness, stretch };
         let same = |stretch| self.textures.constant(&texture, purpose(stretch)).map(|value| value.x);
         match (same(self.stretch()), same(0.0)) {

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `Kd`, `map_Kd` | base colour |
 //! | `Pr`, `map_Pr` | roughness |
-//! | `Ns` (without `Pr`) | roughness by `alpha = sqrt(2 / (Ns + 2))`, the GGX width of a Blinn-Phong exponent |
+//! | `Ns` | exponent; without `Pr` the roughness too, by `alpha = sqrt(2 / (Ns + 2))`, the GGX width of the same peak |
 //! | `Pm`, `map_Pm` | metallic, otherwise 0 |
 //! | `Ks`, `map_Ks` | tint and weight of the dielectric reflection (its F0 stays that of the index) |
 //! | `Ni` | index of refraction, when 1 or more |
@@ -27,6 +27,7 @@ use crate::import::resolve::quoted;
 use crate::import::{Resolver, SharedImage};
 use crate::material::{AlphaMode, Filter, Material, Sampler, TextureRef, Wrap};
 use crate::scene::{Image, Texels};
+use crate::surface::blinn_phong;
 
 /// Name of the material of faces without one.
 pub(super) const DEFAULT_NAME: &str = "default";
@@ -139,7 +140,8 @@ fn convert(mtl: &tobj::Material, textures: &mut Textures<'_>, report: &mut Repor
         opacity,
         metallic: number("Pm").unwrap_or(0.0).clamp(0.0, 1.0),
         // roughness = sqrt(alpha)
-        roughness: number("Pr").unwrap_or((2.0 / (exponent + 2.0)).powf(0.25)).clamp(0.0, 1.0),
+        roughness: number("Pr").unwrap_or(blinn_phong::alpha(exponent).sqrt()).clamp(0.0, 1.0),
+        exponent: blinn_phong::clamp_exponent(exponent),
         emission: mtl.emissive.map_or(Vec3::ZERO, color),
         ior: mtl.optical_density.filter(|n| *n >= 1.0).unwrap_or(1.5),
         specular: weight.min(1.0),

@@ -121,6 +121,7 @@ fn materials_follow_the_table() {
     assert_eq!((red.base_color, red.opacity, red.metallic), (Vec3::X, 0.5, 0.0));
     // alpha = sqrt(2 / 200) = 0.1
     assert!((red.roughness * red.roughness - 0.1).abs() < 1e-6);
+    assert_eq!(red.exponent, 198.0);
     assert_eq!((red.specular, red.specular_color), (0.5, Vec3::new(1.0, 0.5, 0.0)));
     assert_eq!((steel.roughness, steel.metallic, steel.coat, steel.ior), (0.3, 1.0, 0.5, 1.6));
     assert_eq!(steel.emission, Vec3::splat(2.0));

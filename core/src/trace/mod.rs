@@ -15,7 +15,7 @@ use glam::{Vec2, Vec3};
 
 pub use accel::Accel;
 pub use brute::brute_force;
-pub use offset::offset;
+pub use offset::{offset, rounding};
 
 /// A part of a line in the world: points `origin + t direction` with `0 <= t < t_max`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, DMat3, DVec3, Mat3A, Vec3, Vec3A};
+use glam::{Affine3A, DMat3, DVec3, Vec3};
 
 use super::mesh_tree::MeshTree;
 use super::walk::SLACK;
@@ -27,8 +27,9 @@ pub(super) struct Placed {
 pub(super) enum Inverse {
     /// The instance is where its mesh is.
     Identity,
-    /// A world position less `translation`, times `linear`: rounds less than with a translation after the product.
-    Affine { translation: Vec3A, linear: Mat3A },
+    /// A world position less `translation`, times `linear`, in double precision: what is left is the rounding of the
+    /// result, however sheared or far away the instance is.
+    Affine { translation: DVec3, linear: DMat3 },
 }
 
 impl Inverse {
@@ -38,8 +39,8 @@ impl Inverse {
         match self {
             Inverse::Identity => *ray,
             Inverse::Affine { translation, linear } => Ray {
-                origin: (*linear * (Vec3A::from(ray.origin) - *translation)).into(),
-                direction: (*linear * Vec3A::from(ray.direction)).into(),
+                origin: (*linear * (ray.origin.as_dvec3() - *translation)).as_vec3(),
+                direction: (*linear * ray.direction.as_dvec3()).as_vec3(),
                 t_max: ray.t_max,
             },
         }
@@ -68,9 +69,8 @@ impl Placed {
             return Some(Placed { index, tree, bounds: local, slack: SLACK, inverse });
         };
         let matrix = instance.world_from_local.matrix3.as_dmat3();
-        // How much longer than the way itself the terms can be that are summed on the way to the mesh and back.
-        let sums = |m: DMat3| m.abs() * DVec3::ONE;
-        let terms = (matrix.abs() * sums(linear.as_dmat3())).max_element().max(1.0);
+        // By how much a step in the local space, as long as the rounding of a way, can be longer than that in the world.
+        let terms = (matrix.abs() * (linear.abs() * DVec3::ONE)).max_element().max(1.0);
         let slack = SLACK * terms as f32;
         let reach = matrix.abs() * local.min.abs().max(local.max.abs()).as_dvec3();
         let grown = DVec3::splat(f64::from(slack) * reach.max_element());
@@ -81,7 +81,7 @@ impl Placed {
             )
         };
         let mut bounds = Bounds::EMPTY;
-        for p in (0..8).map(|i| matrix * corner(i) + translation.as_dvec3()) {
+        for p in (0..8).map(|i| matrix * corner(i) + translation) {
             bounds = bounds.including((p - grown).as_vec3()).including((p + grown).as_vec3());
         }
         bounds.min = Vec3::from_array(bounds.min.to_array().map(f32::next_down));
@@ -94,9 +94,10 @@ impl Placed {
         if *world_from_local == Affine3A::IDENTITY {
             return Some(Inverse::Identity);
         }
-        let linear = Mat3A::from(world_from_local.matrix3.as_dmat3().inverse().as_mat3());
-        let usable = linear.is_finite() && world_from_local.is_finite();
-        usable.then_some(Inverse::Affine { translation: world_from_local.translation, linear })
+        let linear = world_from_local.matrix3.as_dmat3().inverse();
+        // As a ray in single precision will have it.
+        let usable = linear.as_mat3().is_finite() && world_from_local.is_finite();
+        usable.then(|| Inverse::Affine { translation: world_from_local.translation.as_dvec3(), linear })
     }
 
     /// As [`MeshTree::walk`], for a ray in the world.

@@ -12,7 +12,7 @@ use burnish_core::math::frame::Frame;
 use burnish_core::math::sampling::{self, Random};
 use burnish_core::scene::gallery::shape;
 use burnish_core::scene::{Camera, Instance, Mesh, Scene};
-use burnish_core::trace::{Accel, Ray, offset};
+use burnish_core::trace::{Accel, Ray, offset, rounding};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ const COUNT: usize = 1 << 18;
 /// Rays that a thread takes at once.
 const CHUNK: usize = 1 << 10;
 
-/// A ball with waves of three lengths, `2 n^2` triangles short of its poles.
+/// A ball with waves of three lengths, of about `4 n^2` triangles.
 fn wavy_ball(n: usize) -> Mesh {
     let mut mesh = shape::sphere(1.0, 2 * n);
     for p in &mut mesh.positions {
@@ -67,19 +67,34 @@ fn primary(scene: &Scene) -> Vec<Ray> {
     (0..COUNT).map(one).collect()
 }
 
-/// Points that camera rays meet, with their normals, until there are as many as rays.
-fn met(scene: &Scene, accel: &Accel, rays: &[Ray]) -> Vec<(Vec3, Vec3)> {
+/// A point of a surface from which rays start.
+#[derive(Clone, Copy)]
+struct Point {
+    position: Vec3,
+    normal: Vec3,
+    rounding: Vec3,
+}
+
+impl Point {
+    fn ray(&self, direction: Vec3, t_max: f32) -> Ray {
+        Ray { origin: offset(self.position, self.rounding, self.normal, direction), direction, t_max }
+    }
+}
+
+/// Points that camera rays meet, until there are as many as rays.
+fn met(scene: &Scene, accel: &Accel, rays: &[Ray]) -> Vec<Point> {
     let point = |ray: &Ray| {
         let hit = accel.closest(ray, |_| true)?;
         let instance = &scene.instances[hit.instance as usize];
         let mesh = &scene.meshes[instance.mesh];
-        let [a, b, c] = [0, 1, 2].map(|corner| {
-            let index = mesh.indices[3 * hit.triangle as usize + corner];
-            instance.world_from_local.transform_point3(mesh.positions[index as usize])
-        });
-        let normal = (b - a).cross(c - a).normalize();
-        let position = a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a);
-        Some((position, normal))
+        let first = 3 * hit.triangle as usize;
+        let local = [0, 1, 2].map(|corner| mesh.positions[mesh.indices[first + corner] as usize]);
+        let [a, b, c] = local.map(|p| instance.world_from_local.transform_point3(p));
+        Some(Point {
+            position: a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a),
+            normal: (b - a).cross(c - a).normalize(),
+            rounding: rounding(&instance.world_from_local, local),
+        })
     };
     let points: Vec<_> = rays.iter().filter_map(point).collect();
     points.iter().copied().cycle().take(rays.len()).collect()
@@ -92,16 +107,13 @@ fn kinds(scene: &Scene, accel: &Accel) -> [(&'static str, Vec<Ray>); 4] {
     let bounds = scene.bounds();
     let mut random = Random::new(2);
     let lamp = bounds.center() + bounds.radius() * Vec3::new(1.5, 2.0, 1.0);
-    let shadow = points.iter().map(|(position, normal)| {
-        let origin = offset(*position, *normal, lamp - *position);
-        Ray { origin, direction: (lamp - origin).normalize(), t_max: (lamp - origin).length() }
-    });
-    let shadow = shadow.collect();
-    let bounce = points.iter().map(|(position, normal)| {
-        let direction = Frame::new(*normal).to_world(sampling::cosine_hemisphere(random.point2()));
-        Ray { origin: offset(*position, *normal, direction), direction, t_max: f32::INFINITY }
-    });
-    let bounce = bounce.collect();
+    let to_lamp = |point: &Point| point.ray((lamp - point.position).normalize(), (lamp - point.position).length());
+    let shadow = points.iter().map(to_lamp).collect();
+    let matt = |point: &Point| {
+        let direction = Frame::new(point.normal).to_world(sampling::cosine_hemisphere(random.point2()));
+        point.ray(direction, f32::INFINITY)
+    };
+    let bounce = points.iter().map(matt).collect();
     let mut inside = || bounds.min + random.point3() * (bounds.max - bounds.min);
     let random = (0..COUNT).map(|_| {
         let (from, to) = (inside(), inside());
@@ -124,7 +136,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 }
 
 fn rays(c: &mut Criterion) {
-    for (name, scene) in [("ball", scene(wavy_ball(806), [Affine3A::IDENTITY])), ("crowd", crowd(180))] {
+    for (name, scene) in [("ball", scene(wavy_ball(570), [Affine3A::IDENTITY])), ("crowd", crowd(180))] {
         let accel = Accel::new(&scene);
         println!("{name}: {} triangles, {} MB", scene.triangle_count(), accel.bytes() / 1_000_000);
         let mut group = c.benchmark_group(format!("trace/{name}"));
@@ -142,7 +154,7 @@ fn rays(c: &mut Criterion) {
 }
 
 fn build(c: &mut Criterion) {
-    let scene = scene(wavy_ball(806), [Affine3A::IDENTITY]);
+    let scene = scene(wavy_ball(570), [Affine3A::IDENTITY]);
     let accel = Accel::new(&scene);
     let mut group = c.benchmark_group("trace/build");
     group.throughput(Throughput::Elements(scene.triangle_count() as u64)).sample_size(10);

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::texture::{Coordinates, lookup, mean};
 use crate::material::AlphaMode;
 use crate::scene::Scene;
+use crate::trace::rounding;
 
 /// A triangle that glows.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +29,8 @@ struct Emitter {
 pub(super) struct EmitterSample {
     /// World.
     pub point: Vec3,
-    /// Largest absolute coordinate of the corners.
-    pub extent: f32,
+    /// How far rounding may have moved it, see [`rounding`].
+    pub rounding: Vec3,
     /// Normal of the triangle there, unit.
     pub normal: Vec3,
     /// Toward the eye.
@@ -135,8 +136,10 @@ impl Emitters {
         let point = a * weights.x + b * weights.y + c * weights.z;
         let pdf = emitter.pdf(position, point)?;
         let radiance = emitter.radiance(scene, weights);
-        let extent = a.abs().max(b.abs()).max(c.abs()).max_element();
-        Some(EmitterSample { point, extent, normal: emitter.normal, radiance, pdf })
+        let instance = &scene.instances[emitter.instance as usize];
+        let positions = &scene.meshes[instance.mesh].positions;
+        let rounding = rounding(&instance.world_from_local, emitter.indices.map(|i| positions[i as usize]));
+        Some(EmitterSample { point, rounding, normal: emitter.normal, radiance, pdf })
     }
 
     /// Density per steradian with which [`Emitters::sample`] at `position` draws this point of a triangle; 0 where it never

@@ -43,8 +43,8 @@ pub(super) enum End {
     Surface {
         /// World.
         point: Vec3,
-        /// Largest absolute coordinate of the corners.
-        extent: f32,
+        /// How far rounding may have moved it.
+        rounding: Vec3,
         /// Of the triangle, unit.
         normal: Vec3,
     },
@@ -145,7 +145,7 @@ impl Lights {
         let sample = self.emitters.sample(scene, position, Vec3::new(u.z, u.x, u.y))?;
         let pdf = rate * sample.pdf;
         let direction = (sample.point - position).normalize();
-        let end = End::Surface { point: sample.point, extent: sample.extent, normal: sample.normal };
+        let end = End::Surface { point: sample.point, rounding: sample.rounding, normal: sample.normal };
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
     }
 

@@ -101,7 +101,7 @@ impl Path<'_> {
                 return first;
             }
             drawn = Drawn { position: point.position, pdf: sample.pdf, rates };
-            let origin = offset(point.position, point.extent, point.geometric, sample.wi);
+            let origin = offset(point.position, point.rounding, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
         }
     }
@@ -197,12 +197,12 @@ fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
 }
 
 fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
-    let origin = offset(point.position, point.extent, point.geometric, sample.direction);
+    let origin = offset(point.position, point.rounding, point.geometric, sample.direction);
     match sample.end {
         // A lamp that lies on a surface is not hidden by it.
         End::Distance(distance) => Ray { origin, direction: sample.direction, t_max: distance * (1.0 - 1e-4) },
-        End::Surface { point: end, extent, normal } => {
-            let end = offset(end, extent, normal, -sample.direction);
+        End::Surface { point: end, rounding, normal } => {
+            let end = offset(end, rounding, normal, -sample.direction);
             let toward = end - origin;
             let t_max = toward.length();
             Ray { origin, direction: toward / t_max, t_max }

@@ -10,15 +10,15 @@ use crate::math::frame::Frame;
 use crate::surface::fresnel::Fresnel;
 use crate::surface::layered::{Lobe, Surface};
 use crate::surface::{dielectric, micro_normal};
-use crate::trace::Hit;
+use crate::trace::{Hit, rounding};
 
 /// A point that a ray met.
 #[derive(Clone, Debug)]
 pub(super) struct Point<'a> {
     /// World, metres.
     pub position: Vec3,
-    /// Largest absolute coordinate of the corners of the triangle, metres.
-    pub extent: f32,
+    /// How far rounding may have moved it, see [`rounding`].
+    pub rounding: Vec3,
     /// Normal of the triangle on the side that is looked at, unit.
     pub geometric: Vec3,
     /// Seen from the side on which corners run counter-clockwise.
@@ -107,7 +107,7 @@ impl<'a> Point<'a> {
 
         let [a, b, c] = corners.map(|corner| instance.world_from_local.transform_point3(mesh.positions[corner]));
         let position = a * weights.x + b * weights.y + c * weights.z;
-        let extent = a.abs().max(b.abs()).max(c.abs()).max_element();
+        let rounding = rounding(&instance.world_from_local, corners.map(|corner| mesh.positions[corner]));
         let outward = triangle.normal();
         let front = outward.dot(to_viewer) >= 0.0;
         let side = if front { 1.0 } else { -1.0 };
@@ -139,7 +139,7 @@ impl<'a> Point<'a> {
         let texel = look(m.emission_texture, true).map_or(Vec3::ONE, Vec4::xyz);
         let mut point = Point {
             position,
-            extent,
+            rounding,
             geometric,
             front,
             base,

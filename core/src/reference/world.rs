@@ -170,7 +170,8 @@ impl World {
             AlphaMode::Opaque => true,
             AlphaMode::Mask { cutoff } => triangle.opacity() >= cutoff,
             AlphaMode::Blend => {
-                let chance = unit(pcg(pcg(salt ^ hit.triangle).wrapping_add(hit.instance)));
+                // The salt is hashed by itself: those of the rays of a path are neighbours, as are triangles.
+                let chance = unit(pcg(pcg(pcg(salt) ^ hit.triangle).wrapping_add(hit.instance)));
                 chance < triangle.opacity()
             }
         }

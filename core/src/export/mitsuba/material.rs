@@ -9,7 +9,7 @@ use super::{Options, element_name};
 use crate::export::{Folder, Loss};
 use crate::file::FileError;
 use crate::material::preset::Preset;
-use crate::material::{AlphaMode, Material, Reflectance, ReflectionModel, TextureRef};
+use crate::material::{AlphaMode, Filter, Material, Reflectance, TextureRef};
 use crate::scene::Scene;
 use crate::surface::micro_normal;
 
@@ -151,9 +151,6 @@ impl Writer<'_, '_> {
             }
             return;
         }
-        if m.reflection_model != ReflectionModel::Ggx {
-            self.note(Loss::Approximated, "GGX with the same peak stands for its Blinn-Phong reflection");
-        }
         if m.coat > 0.0 {
             self.note(Loss::Dropped, "the clear coat");
         }
@@ -222,7 +219,8 @@ impl Writer<'_, '_> {
             Share::Number(opacity) if opacity >= 1.0 => Ok(Opacity::All),
             Share::Number(opacity) => Ok(Opacity::Part(Element::float("opacity", opacity))),
             Share::Texture(texture) => {
-                if cutoff.is_some() {
+                let smooth = m.base_color_texture.is_some_and(|texture| texture.sampler.magnify == Filter::Linear);
+                if cutoff.is_some() && smooth {
                     self.note(Loss::Approximated, "its mask is cut at texels, not between them");
                 }
                 Ok(Opacity::Part(texture))

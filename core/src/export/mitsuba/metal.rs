@@ -54,10 +54,10 @@ pub enum Width {
     Textures(Box<[Element; 2]>),
 }
 
-/// A conductor: a mirror where it is smoother than rough ones are drawn.
-pub fn conductor(index: [Element; 2], width: Width) -> Element {
+/// A conductor of the named distribution: a mirror where it is smoother than rough ones are drawn.
+pub fn conductor(index: [Element; 2], distribution: &str, width: Width) -> Element {
     let rough = |widths: [Element; 2]| {
-        Element::plugin("bsdf", "roughconductor").with(Element::string("distribution", "ggx")).with_all(widths)
+        Element::plugin("bsdf", "roughconductor").with(Element::string("distribution", distribution)).with_all(widths)
     };
     let bsdf = match width {
         Width::Both(alpha) if ggx::is_mirror(alpha) => Element::plugin("bsdf", "conductor"),

@@ -10,6 +10,7 @@ use crate::export::Loss;
 use crate::file::FileError;
 use crate::material::{Reflectance, ReflectionModel, TextureRef};
 use crate::surface::fresnel::Fresnel;
+use crate::surface::layered::Lobe;
 use crate::surface::{dielectric, ggx};
 
 /// Reflectance at normal incidence below which a dielectric is written as matte.
@@ -38,10 +39,22 @@ impl Writer<'_, '_> {
         Ok(Element::plugin("bsdf", "blendbsdf").with(weight).with(dielectric).with(metal))
     }
 
-    /// Widths by the factors alone.
+    /// The distribution of microfacets that stands for the lobe.
+    fn distribution(&self) -> &'static str {
+        match self.material.reflection_model {
+            ReflectionModel::Ggx => "ggx",
+            ReflectionModel::BlinnPhong(_) => "beckmann",
+        }
+    }
+
+    /// Widths by the factors alone. Beckmann's is that of a Blinn-Phong exponent s, `alpha^2 = 2 / (s + 2)`: Walter et al. 2007,
+    /// section 5.2.
     fn alpha(&self) -> Vec2 {
+        if let Lobe::BlinnPhong { exponent, .. } = self.material.lobe() {
+            return Vec2::splat((2.0 / (exponent + 2.0)).sqrt());
+        }
         let alpha = self.material.roughness.powi(2);
-        self.material.lobe().alpha(Vec2::new(alpha + (1.0 - alpha) * self.stretch(), alpha))
+        Vec2::new(alpha + (1.0 - alpha) * self.stretch(), alpha)
     }
 
     fn stretch(&self) -> f32 {
@@ -51,8 +64,8 @@ impl Writer<'_, '_> {
     /// The roughness texture, where texels differ; else the widths that it and the factors make.
     fn width(&mut self) -> (Vec2, Option<TextureRef>) {
         let m = self.material;
-        let rough = m.metallic_roughness_texture.filter(|_| m.reflection_model == ReflectionModel::Ggx);
-        let Some(texture) = self.used(rough) else { return (self.alpha(), None) };
+        let texture = m.metallic_roughness_texture.filter(|_| m.reflection_model == ReflectionModel::Ggx);
+        let Some(texture) = self.used(texture) else { return (self.alpha(), None) };
         let purpose = |stretch| Use::Alpha { factor: m.roughness, stretch };
         let same = |stretch| self.textures.constant(&texture, purpose(stretch)).map(|value| value.x);
         match (same(self.stretch()), same(0.0)) {
@@ -63,6 +76,7 @@ impl Writer<'_, '_> {
 
     fn metal(&mut self) -> Result<Element, FileError> {
         let m = self.material;
+        self.tell_of_the_lobe();
         let (alpha, texture) = self.width();
         self.tell_of_scattering(texture.is_some() || !ggx::is_mirror(alpha));
         match &m.reflectance {
@@ -79,7 +93,7 @@ impl Writer<'_, '_> {
                     }
                 };
                 let width = self.textured_width(alpha, texture)?;
-                Ok(metal::conductor(index, width))
+                Ok(metal::conductor(index, self.distribution(), width))
             }
             Reflectance::BaseColor => self.base_color_metal(alpha, texture),
         }
@@ -98,14 +112,15 @@ impl Writer<'_, '_> {
     fn base_color_metal(&mut self, alpha: Vec2, texture: Option<TextureRef>) -> Result<Element, FileError> {
         let m = self.material;
         let flat = m.base_color_texture.is_none() && !self.takes_colors();
-        let Some((roughness, anisotropic)) = metal::principled_width(alpha) else {
+        let is_ggx = m.reflection_model == ReflectionModel::Ggx;
+        let Some((roughness, anisotropic)) = metal::principled_width(alpha).filter(|_| is_ggx || !flat) else {
             if flat {
                 let curve = Fresnel::Rescaled { f0: m.base_color.min(Vec3::ONE) };
                 let (n, k, error) = metal::index(&curve);
                 let what = format!("its reflectance by one index per channel, {error:.4} off at most");
                 self.note(Loss::Approximated, what);
                 let width = self.textured_width(alpha, texture)?;
-                return Ok(metal::conductor(metal::effective_index(n, k), width));
+                return Ok(metal::conductor(metal::effective_index(n, k), self.distribution(), width));
             }
             self.note(Loss::Approximated, "its anisotropy is more than principled holds; it is even");
             let round = Vec2::splat((alpha.x * alpha.y).sqrt());
@@ -130,6 +145,12 @@ impl Writer<'_, '_> {
         Ok(bsdf.with(roughness).with_all(brushed))
     }
 
+    fn tell_of_the_lobe(&mut self) {
+        if self.material.reflection_model != ReflectionModel::Ggx {
+            self.note(Loss::Approximated, "its Blinn-Phong lobe by microfacets of the same width");
+        }
+    }
+
     fn tell_of_scattering(&mut self, rough: bool) {
         if rough {
             let what = "microfacets mask light and view apart (separable), and light scatters once: render with \
@@ -150,6 +171,7 @@ impl Writer<'_, '_> {
             let color = self.base_color("reflectance")?;
             return Ok(Element::plugin("bsdf", "diffuse").with(color));
         }
+        self.tell_of_the_lobe();
         self.note(Loss::Approximated, "its reflection by the equations of Fresnel over a base of `roughplastic`");
         let textured = [(m.specular_texture, "strength"), (m.specular_color_texture, "tint")];
         for (texture, what) in textured {
@@ -173,7 +195,9 @@ impl Writer<'_, '_> {
             .with(Element::float("int_ior", (1.0 + root) / (1.0 - root)))
             .with(Element::float("ext_ior", 1.0));
         if !mirror {
-            bsdf = bsdf.with(Element::string("distribution", "ggx")).with(Element::float("alpha", width.min(1.0)));
+            bsdf = bsdf
+                .with(Element::string("distribution", self.distribution()))
+                .with(Element::float("alpha", width.min(1.0)));
         }
         let tint = strongest / strongest.max_element();
         Ok(bsdf.with_all((tint != Vec3::ONE).then(|| Element::rgb("specular_reflectance", tint))))

@@ -132,6 +132,18 @@ fn a_base_colour_is_the_metal_of_principled() {
 }
 
 #[test]
+fn an_exponent_is_a_width_of_beckmann() {
+    let model = crate::material::ReflectionModel::ALL[1];
+    for reflectance in [gold(Form::EffectiveNk), Reflectance::BaseColor] {
+        let metal =
+            Material { reflectance, metallic: 1.0, reflection_model: model, exponent: 6.0, ..Material::default() };
+        let (text, report) = exported(&plate(metal), false);
+        assert!(text.contains("beckmann") && text.contains("name=\"alpha_u\" value=\"0.5\""), "{text}");
+        assert!(notes(&report).contains("Blinn-Phong"), "{}", notes(&report));
+    }
+}
+
+#[test]
 fn matte_is_diffuse_and_gloss_is_told_to_be_approximate() {
     let matte = Material { specular: 0.0, double_sided: true, base_color: Vec3::splat(0.5), ..Material::default() };
     let (text, report) = exported(&plate(matte.clone()), false);

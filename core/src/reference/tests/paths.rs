@@ -52,6 +52,32 @@ fn shadows_of_half_transparent_panes_are_half_dark() {
 }
 
 #[test]
+fn chances_of_the_rays_of_a_path_do_not_hang_together() {
+    let pane = Material { opacity: 0.25, alpha_mode: AlphaMode::Blend, ..matte(Vec3::ZERO) };
+    let lifted = Affine3A::from_translation(Vec3::Z);
+    let mut lit = scene([
+        (shape::plane(1.0, 1.0), matte(Vec3::ONE)),
+        (shape::transformed(shape::plane(9.0, 9.0), &lifted), pane),
+    ]);
+    // The eye looks through one triangle of the pane, the sun shines through the other.
+    let toward_sun = Vec3::new(-0.8, -0.1, 1.0).normalize();
+    lit.lights.push(Light {
+        name: "sun".into(),
+        position: Vec3::ZERO,
+        direction: -toward_sun,
+        intensity: Vec3::splat(std::f32::consts::PI),
+        range: f32::INFINITY,
+        kind: LightKind::Directional,
+    });
+    let eye = Vec3::new(2.4, 0.3, 3.0);
+    let mut view = view(eye, Vec3::ZERO, 8, 1);
+    view.camera = Camera::look_at("above the pane", eye, Vec3::ZERO, 0.1);
+    let got = mean(&film(lit, Options { bounces: 1, ..Options::default() }, &view, 1024));
+    let expected = f64::from(0.75 * 0.75 * toward_sun.z);
+    assert!((got.x - expected).abs() < 0.01, "{got} {expected}");
+}
+
+#[test]
 fn backs_of_one_sided_surfaces_are_clear_to_the_eye_and_dark_to_light() {
     let one_sided = Material { double_sided: false, emission: Vec3::splat(3.0), ..matte(Vec3::ZERO) };
     assert_eq!(wall(one_sided.clone(), Options::default(), FRONT, 4).x, 3.0);

@@ -91,8 +91,8 @@ fn under_a_power_of_the_cosine_nothing_returns_more_light_than_it_gets() {
                 for wo in views(0.3).filter(|wo| wo.z > least) {
                     let total = smooth_albedo(&polar, 96, |wi| response(&surface, wo, wi, wo, wi).x / wi.z);
                     // Microfacets without masking reflect more at grazing half vectors than their base is told.
-                    let most = if variant == Variant::Exact { 1.01 } else { 1.05 };
-                    let least = if metallic == 0.0 && coat == 0.0 { 0.9 } else { 0.0 };
+                    let most = if variant == Variant::Exact { 1.01 } else { 1.06 };
+                    let least = if metallic == 0.0 && coat == 0.0 { 0.95 } else { 0.0 };
                     assert!(total > least && total < most, "{variant:?} {exponent} {metallic} {coat} {wo}: {total}");
                 }
             }

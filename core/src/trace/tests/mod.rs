@@ -1,10 +1,12 @@
 //! What rays find, held to plain loops and to geometry.
 
 mod agree;
+mod closed;
+mod leave;
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::{Accel, Hit, Ray, brute_force};
 use crate::material::Material;
@@ -33,4 +35,8 @@ fn scene(meshes: impl IntoIterator<Item = Mesh>) -> Scene {
 
 fn any(_: &Hit) -> bool {
     true
+}
+
+fn ray(origin: Vec3, direction: Vec3) -> Ray {
+    Ray { origin, direction, t_max: f32::INFINITY }
 }

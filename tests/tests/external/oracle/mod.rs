@@ -27,7 +27,7 @@ use statistics::{Batches, Comparison};
 /// Independent pictures of each renderer.
 const BATCHES: u32 = 64;
 /// Pixels of a picture.
-const SIZE: UVec2 = UVec2::new(64, 48);
+const SIZE: UVec2 = UVec2::new(48, 36);
 /// Least share of pixels and channels within three standard deviations of each other.
 const WITHIN: f64 = 0.995;
 /// Largest relative difference of the means of two pictures.

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 const LARGEST_Z: f64 = 3.0;
 
 /// Batches whose scatter is this small against the mean have none: rounding.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 3e-5;
 
 /// Mean and variance of the mean of every pixel, of pictures that are independent of each other.
 #[derive(Clone, Debug, Default)]

@@ -52,6 +52,8 @@ impl std::fmt::Display for OffscreenError {
     }
 }
 
+impl std::error::Error for OffscreenError {}
+
 impl From<GpuError> for OffscreenError {
     fn from(error: GpuError) -> Self {
         OffscreenError::Gpu(error)
@@ -70,7 +72,16 @@ pub struct Offscreen {
 impl Offscreen {
     /// Opens the best adapter for windows of so many pixels.
     pub fn new(size: UVec2) -> Result<Offscreen, GpuError> {
-        let (render, gpu) = pollster::block_on(render_state())?;
+        Offscreen::with(size, RendererOptions::PREDICTABLE)
+    }
+
+    /// The same, drawn as windows of the system are: faster, and not the same on every machine.
+    pub fn like_native(size: UVec2) -> Result<Offscreen, GpuError> {
+        Offscreen::with(size, RendererOptions::default())
+    }
+
+    fn with(size: UVec2, options: RendererOptions) -> Result<Offscreen, GpuError> {
+        let (render, gpu) = pollster::block_on(render_state(options))?;
         Ok(Offscreen { ctx: egui::Context::default(), render, gpu, size, time_secs: 0.0 })
     }
 
@@ -89,7 +100,7 @@ impl Offscreen {
         let start = Instant::now();
         let mut quiet = 0;
         loop {
-            let output = self.pass(workbench);
+            let output = self.pass(workbench, Vec::new());
             self.gpu.check()?;
             if start.elapsed() > PATIENCE {
                 return Err(OffscreenError::Restless);
@@ -114,12 +125,30 @@ impl Offscreen {
         }
     }
 
+    /// One frame as a window draws it, at a time of the window's clock and with input that came before it. Returns when
+    /// it is on the screen, with the wait until the next one is wished for.
+    pub fn frame(
+        &mut self,
+        workbench: &mut Workbench,
+        events: Vec<egui::Event>,
+        time_secs: f64,
+    ) -> Result<Duration, OffscreenError> {
+        self.time_secs = time_secs;
+        let output = self.pass(workbench, events);
+        let wait = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        self.paint(output);
+        self.gpu.wait()?;
+        self.gpu.check()?;
+        Ok(wait)
+    }
+
     /// One pass of the window, textures included.
-    fn pass(&mut self, workbench: &mut Workbench) -> FullOutput {
+    fn pass(&mut self, workbench: &mut Workbench, events: Vec<egui::Event>) -> FullOutput {
         let size = egui::vec2(self.size.x as f32, self.size.y as f32);
         let mut input = RawInput {
             screen_rect: Some(egui::Rect::from_min_size(pos2(0.0, 0.0), size)),
             time: Some(self.time_secs),
+            events,
             predicted_dt: STEP_SECS as f32,
             focused: true,
             system_theme: Some(egui::Theme::Dark),
@@ -146,6 +175,12 @@ impl Offscreen {
 
     /// Paints a pass and reads its pixels, linear as pictures are.
     fn read(&self, output: FullOutput) -> Result<Picture, OffscreenError> {
+        let target = self.paint(output);
+        let bytes = read_texture(&self.gpu, &target, 0, 0)?;
+        Ok(picture(self.size, &bytes))
+    }
+
+    fn paint(&self, output: FullOutput) -> wgpu::Texture {
         let RenderState { device, queue, renderer, .. } = &self.render;
         let pixels_per_point = output.pixels_per_point;
         let shapes = self.ctx.tessellate(output.shapes, pixels_per_point);
@@ -182,8 +217,7 @@ impl Offscreen {
         renderer.render(&mut pass, &shapes, &screen);
         drop(pass);
         queue.submit(before.into_iter().chain([encoder.finish()]));
-        let bytes = read_texture(&self.gpu, &target, 0, 0)?;
-        Ok(picture(self.size, &bytes))
+        target
     }
 }
 
@@ -198,7 +232,7 @@ fn picture(size: UVec2, bytes: &[u8]) -> Picture {
 }
 
 /// The best adapter that is accepted, with egui's renderer on it.
-async fn render_state() -> Result<(RenderState, Gpu), GpuError> {
+async fn render_state(options: RendererOptions) -> Result<(RenderState, Gpu), GpuError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = ACCEPTED;
     let instance = wgpu::Instance::new(descriptor);
@@ -208,7 +242,7 @@ async fn render_state() -> Result<(RenderState, Gpu), GpuError> {
     let (device, queue) =
         opened.map_err(|e| GpuError::Open { adapter: adapter.get_info().name, reason: e.to_string() })?;
     let gpu = Gpu::from_parts(&adapter, device.clone(), queue.clone());
-    let renderer = Renderer::new(&device, FORMAT, RendererOptions::PREDICTABLE);
+    let renderer = Renderer::new(&device, FORMAT, options);
     let renderer = Arc::new(RwLock::new(renderer));
     Ok((RenderState { adapter, available_adapters, instance, device, queue, target_format: FORMAT, renderer }, gpu))
 }

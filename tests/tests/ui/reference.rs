@@ -24,7 +24,7 @@ pub fn trials() -> Vec<Trial> {
 /// Small: a debug build traces it.
 fn bench(name: &str) -> Bench {
     let name = format!("reference-{name}");
-    Bench::new(Setup { name: &name, scene: Some("gallery:workbench"), size: [760.0, 420.0], drawn: false })
+    Bench::new(Setup { name: &name, scene: Some("gallery:workbench"), size: [560.0, 320.0], drawn: false })
 }
 
 fn reference(bench: &Bench) -> &Reference {

@@ -8,7 +8,7 @@ use crate::window::panel::Context;
 use crate::window::request::Request;
 
 /// Points of the two buttons.
-const SIZE: egui::Vec2 = vec2(126.0, 24.0);
+const SIZE: egui::Vec2 = vec2(108.0, 24.0);
 
 /// What the numbers about the reference are.
 const HELP: &str = "Samples: paths through each pixel so far. Noise: relative standard error of the picture, an upper \

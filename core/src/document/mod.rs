@@ -203,7 +203,7 @@ pub struct LightingEntry {
     /// Changed settings by key.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub settings: Map<String, Value>,
-    /// Changed settings of the [`reference`](crate::reference) by key, without those that it shares with the method.
+    /// Changed settings of the [reference](mod@reference) by key, without those that it shares with the method.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub reference: Map<String, Value>,
     /// Fields that this version does not know.

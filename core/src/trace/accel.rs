@@ -22,7 +22,7 @@ use crate::scene::{Bounds, Mesh, Scene};
 /// The visible instances of a scene. Copies share everything.
 #[derive(Clone, Debug)]
 pub struct Accel {
-    shared: Arc<Shared>,
+    pub(super) shared: Arc<Shared>,
 }
 
 impl Default for Accel {
@@ -34,14 +34,15 @@ impl Default for Accel {
 }
 
 #[derive(Debug)]
-struct Shared {
+pub(super) struct Shared {
     /// Trees of the meshes of the scene that were visible once. The meshes are kept, so that a pointer stays theirs.
-    trees: Vec<(Arc<Mesh>, Arc<MeshTree>)>,
-    placed: Vec<Placed>,
-    bounds: Bounds,
+    pub trees: Vec<(Arc<Mesh>, Arc<MeshTree>)>,
+    pub placed: Vec<Placed>,
+    pub bounds: Bounds,
     /// Over the instances; a leaf is a place in `placed`.
-    nodes: Vec<Node>,
-    slack: f32,
+    pub nodes: Vec<Node>,
+    /// Share of a distance by which its boxes are grown.
+    pub slack: f32,
 }
 
 impl Accel {

@@ -13,8 +13,9 @@ use crate::scene::{Bounds, Mesh};
 #[derive(Debug)]
 pub(super) struct MeshTree {
     pub bounds: Bounds,
-    nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    pub nodes: Vec<Node>,
+    /// The leaves.
+    pub blocks: Vec<Block>,
 }
 
 impl MeshTree {

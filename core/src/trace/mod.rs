@@ -2,6 +2,7 @@
 
 mod accel;
 mod brute;
+mod flat;
 mod mesh_tree;
 mod offset;
 mod placed;
@@ -15,6 +16,7 @@ use glam::{Vec2, Vec3};
 
 pub use accel::Accel;
 pub use brute::brute_force;
+pub use flat::{Flat, FlatInstance, FlatNode, FlatTriangle};
 pub use offset::{offset, rounding};
 
 /// A part of a line in the world: points `origin + t direction` with `0 <= t < t_max`.

@@ -6,8 +6,8 @@ use glam::{Affine3A, Mat3A, Vec3};
 const UNIT: f32 = 0.5 * f32::EPSILON;
 
 /// Roundings that the coordinates of a point go through: sums and products of the way to the world (4), of the weighted
-/// corners (4), of the step along the normal (1) and of the way back to local space (1). Errors of so many terms hardly
-/// ever all add up; the tests stay clear of hits with a quarter of it.
+/// corners (4), of the step along the normal (1) and of the way back to local space (1). So many errors hardly ever all
+/// add up: the rays of the tests need a third of both numbers.
 const OF_COORDINATES: f32 = 10.0;
 
 /// Roundings in the test of a triangle, of lengths within it: the shear (6) and the weighted depths (4).

@@ -19,7 +19,8 @@ pub(super) struct Placed {
     pub bounds: Bounds,
     /// By how much rounding moves a ray that is brought to the mesh, in distances from its origin.
     pub slack: f32,
-    inverse: Inverse,
+    /// Brings rays to the mesh.
+    pub inverse: Inverse,
 }
 
 /// Brings rays to the mesh.

@@ -20,7 +20,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[repr(C, align(32))]
 pub(super) struct Block {
     /// Corner, axis, triangle. NaN where there is no triangle: no comparison holds there.
-    corners: [[Vec4; 3]; 3],
+    pub corners: [[Vec4; 3]; 3],
     /// Place in the mesh, or [`NONE`].
     pub triangles: [u32; BLOCK],
 }
@@ -39,9 +39,8 @@ pub(super) struct Sheared {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
     t: Vec4,
-    /// Weights of the corners, not yet divided by their sum.
-    weights: [Vec4; 3],
-    sum: Vec4,
+    /// Weights of the second and third corner.
+    weights: [Vec4; 2],
     /// One bit per triangle.
     pub mask: u32,
 }
@@ -99,12 +98,15 @@ impl Sheared {
         if !inside.any() {
             return None;
         }
-        // A sum of zero, the triangle seen from its edge, makes t infinite or NaN.
-        let sum = u + v + w;
-        let t = (u * depth[0] + v * depth[1] + w * depth[2]) * self.shear[2] / sum;
+        // A sum of zero, the triangle seen from its edge, makes t infinite or NaN. Divided first: areas times depths
+        // would leave the range of numbers long before both do.
+        let per_sum = Vec4::ONE / (u + v + w);
+        let weights = weights.map(|weight| weight * per_sum);
+        let [u, v, w] = weights;
+        let t = (u * depth[0] + v * depth[1] + w * depth[2]) * self.shear[2];
         let met = inside & t.cmpge(Vec4::ZERO) & t.cmple(Vec4::splat(limit)) & t.cmplt(Vec4::INFINITY);
         let mask = met.bitmask();
-        (mask != 0).then_some(Met { t, weights, sum, mask })
+        (mask != 0).then_some(Met { t, weights: [v, w], mask })
     }
 }
 
@@ -127,7 +129,7 @@ impl Met {
     /// Parameter of the ray and weights of the second and third corner, for the triangle in a place of the block.
     #[inline(always)]
     pub fn at(&self, lane: usize) -> (f32, Vec2) {
-        let [_, v, w] = self.weights;
-        (self.t[lane], Vec2::new(v[lane], w[lane]) / self.sum[lane])
+        let [v, w] = self.weights;
+        (self.t[lane], Vec2::new(v[lane], w[lane]))
     }
 }

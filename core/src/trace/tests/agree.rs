@@ -6,7 +6,7 @@ use super::*;
 use crate::scene::gallery::shape;
 
 /// Meshes of several kinds placed in ways that hurt: mirrored, sheared, flattened, far away, inside each other.
-fn crowd() -> Scene {
+pub(super) fn crowd() -> Scene {
     let mut random = Random::new(1);
     let mut scene = scene([shape::sphere(1.0, 24), shape::torus(1.0, 0.3, 20, 8), shape::block(Vec3::ONE, 0.1, 3)]);
     for i in 0..60 {
@@ -21,7 +21,7 @@ fn crowd() -> Scene {
     scene
 }
 
-fn rays(count: usize, size: f32) -> Vec<Ray> {
+pub(super) fn rays(count: usize, size: f32) -> Vec<Ray> {
     let mut random = Random::new(7);
     let mut one = |i: usize| {
         let (from, to) = (size * cube(&mut random), size * cube(&mut random));

@@ -2,6 +2,8 @@
 
 mod agree;
 mod closed;
+mod edges;
+mod flat;
 mod leave;
 
 use std::sync::Arc;

@@ -6,6 +6,8 @@
 
 #[path = "external/oracle/mod.rs"]
 mod oracle;
+#[path = "external/rays.rs"]
+mod rays;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -41,6 +43,7 @@ fn trials(data: &Path) -> Vec<Trial> {
     let counts = table(&models.join("README.md"), 2);
     let maxima = table(&data.join("hdri/README.md"), 5);
     let mut trials = Vec::new();
+    trials.push(rays::trial(files(&models, &["gltf", "glb", "obj"])));
     for path in files(&models, &["gltf", "glb", "obj"]) {
         let key = key(&path, &models);
         let triangles = counts.get(&key).cloned();

@@ -64,6 +64,24 @@ fn it_refines_while_nothing_changes_and_an_edit_starts_it_anew() {
 }
 
 #[test]
+fn wavelengths_are_traced_where_the_settings_ask_for_them() {
+    let (mut reference, mut session) = (on(), session());
+    until(&mut reference, &session, |reference| samples(reference) > 0);
+    let rgb = reference.shown().unwrap().picture.clone();
+    session.edit("Wavelengths", "", |document| {
+        document.set_reference("spectral", burnish_core::param::ParamValue::Toggle(true)).unwrap();
+    });
+    until(&mut reference, &session, |reference| samples(reference) > 0);
+    let spectral = reference.shown().unwrap().picture.clone();
+    // Three wavelengths in a single sample are no grey: even a neutral pixel comes back coloured.
+    let colored = |picture: &Picture| {
+        let saturation = |t: &Vec4| (t.truncate().max_element() - t.truncate().min_element()) / t.truncate().length();
+        picture.texels.iter().map(saturation).filter(|s| s.is_finite()).sum::<f32>()
+    };
+    assert!(colored(&spectral) > 1.5 * colored(&rgb), "{} {}", colored(&spectral), colored(&rgb));
+}
+
+#[test]
 fn nothing_is_traced_for_nobody_and_what_was_traced_is_kept() {
     let (mut reference, session) = (on(), session());
     until(&mut reference, &session, |reference| samples(reference) > 3);

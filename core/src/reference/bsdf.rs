@@ -58,7 +58,7 @@ impl<'a> Bsdf<'a> {
         let wo = facing(point.base.to_local(to_viewer));
         let coat_wo = facing(point.coat.to_local(to_viewer));
         let s = &surface;
-        let passed_o = if s.coat > 0.0 { coat::transmission(coat_wo, s.coat_alpha, s.coat, s.masking) } else { 1.0 };
+        let passed_o = coat::transmission(coat_wo, s.coat_alpha, s.coat, s.masking);
         let base_is_mirror = ggx::is_mirror(s.alpha);
         let coat_is_mirror = s.coat_alpha < ggx::ALPHA_MIN;
         let spread = layered::Spread::new(s, wo);
@@ -144,7 +144,7 @@ impl<'a> Bsdf<'a> {
         let s = &self.surface;
         let wi = self.mirrored(&self.base, self.wo)?;
         let coat_wi = self.coat.to_local(wi);
-        let passed_i = if s.coat > 0.0 { coat::transmission(coat_wi, s.coat_alpha, s.coat, s.masking) } else { 1.0 };
+        let passed_i = coat::transmission(coat_wi, s.coat_alpha, s.coat, s.masking);
         let value = self.passed_o * passed_i * layered::reflectance(s, self.wo.z);
         Some(BsdfSample { wi, weight: value / self.chances.glossy, pdf: f32::INFINITY })
     }

@@ -45,7 +45,7 @@ pub(super) struct Emitters {
     list: Vec<Emitter>,
     /// Share of the power before each, from 0 to 1; one more than there are triangles.
     shares: Vec<f64>,
-    /// Place in the list of the first triangle of an instance that glows, with the triangles of its mesh.
+    /// For each instance that glows, the place in the list of each triangle of its mesh, or [`NONE`].
     places: HashMap<u32, Vec<u32>>,
     /// Power over pi: the sum of area times mean radiance, of both sides where both glow.
     power: f32,
@@ -72,30 +72,41 @@ impl Emitters {
             let radiance = (m.emission * mean(scene, m.emission_texture)).element_sum() / 3.0;
             // A texture may be black where it was looked at and glow elsewhere.
             let radiance = radiance.max(1e-3 * m.emission.max_element());
-            let mesh = &scene.meshes[instance.mesh];
-            let mut places = Vec::with_capacity(mesh.indices.len() / 3);
-            let (triangles, _) = mesh.indices.as_chunks::<3>();
-            for indices in triangles {
-                let corners = indices.map(|i| instance.world_from_local.transform_point3(mesh.positions[i as usize]));
-                let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                let area = 0.5 * cross.length();
-                if !(area > 0.0 && area.is_finite()) {
-                    places.push(NONE);
-                    continue;
-                }
-                places.push(emitters.list.len() as u32);
-                let mirrored = instance.world_from_local.matrix3.determinant() < 0.0;
-                let normal = cross.normalize() * if mirrored { -1.0 } else { 1.0 };
-                let sides = if m.double_sided { 2.0 } else { 1.0 };
-                powers.push(f64::from(area * radiance * sides));
-                let (indices, instance) = (*indices, index as u32);
-                let density = 1.0 / area;
-                emitters.list.push(Emitter { corners, indices, normal, instance, both_sides: m.double_sided, density });
-            }
-            emitters.places.insert(index as u32, places);
+            let sides = if m.double_sided { 2.0 } else { 1.0 };
+            emitters.add(scene, index, sides * radiance, &mut powers);
         }
         emitters.share_out(&powers);
         emitters
+    }
+
+    /// Appends the triangles of an instance of that radiance, sum of both sides where both glow, and their powers.
+    fn add(&mut self, scene: &Scene, index: usize, radiance: f32, powers: &mut Vec<f64>) {
+        let instance = &scene.instances[index];
+        let mesh = &scene.meshes[instance.mesh];
+        let both_sides = scene.materials[instance.material].double_sided;
+        let side = if instance.world_from_local.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let mut places = Vec::with_capacity(mesh.indices.len() / 3);
+        let (triangles, _) = mesh.indices.as_chunks::<3>();
+        for indices in triangles {
+            let corners = indices.map(|i| instance.world_from_local.transform_point3(mesh.positions[i as usize]));
+            let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let area = 0.5 * cross.length();
+            if !(area > 0.0 && area.is_finite()) {
+                places.push(NONE);
+                continue;
+            }
+            places.push(self.list.len() as u32);
+            powers.push(f64::from(area * radiance));
+            self.list.push(Emitter {
+                corners,
+                indices: *indices,
+                normal: side * cross.normalize(),
+                instance: index as u32,
+                both_sides,
+                density: 1.0 / area,
+            });
+        }
+        self.places.insert(index as u32, places);
     }
 
     /// Shares, densities and the middle of it all.

@@ -149,7 +149,7 @@ impl Lights {
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
     }
 
-    /// Radiance of the sky, and the density with which it is sampled at `position`, before the rate.
+    /// Radiance of the sky, and the density with which it is sampled, before the rate.
     pub(super) fn look(&self, direction: Vec3) -> (Vec3, f32) {
         self.sky.as_ref().map_or((Vec3::ZERO, 0.0), |sky| sky.look(direction))
     }

@@ -7,7 +7,7 @@ use super::waves::Waves;
 use super::world::World;
 use crate::material::{Material, Reflectance};
 use crate::math::frame::Frame;
-use crate::surface::fresnel::Fresnel;
+use crate::surface::fresnel::{Fresnel, schlick_mean};
 use crate::surface::layered::{Lobe, Surface};
 use crate::surface::{dielectric, micro_normal};
 use crate::trace::{Hit, rounding};
@@ -191,7 +191,8 @@ impl<'a> Parts<'a> {
         let tint = m.specular_color * look(m.specular_color_texture, true).xyz();
         // An unlit surface shows its colour as it is.
         let base_color = waves.of_rgb(if m.unlit { color } else { color.clamp(Vec3::ZERO, Vec3::ONE) });
-        let mut own = (Fresnel::Rescaled { f0: base_color }, base_color + (Vec3::ONE - base_color) / 21.0);
+        let rescaled = |f0| (Fresnel::Rescaled { f0 }, schlick_mean(f0, 1.0));
+        let mut own = rescaled(base_color);
         let metal = world.metal(triangle.hit.instance);
         let preset = match (&m.reflectance, metal, waves) {
             (Reflectance::BaseColor, ..) => None,
@@ -200,8 +201,7 @@ impl<'a> Parts<'a> {
                 None
             }
             (Reflectance::Preset { fresnel, .. }, None, Waves::Three(_)) => {
-                let f0 = waves.of_rgb(fresnel.f0());
-                own = (Fresnel::Rescaled { f0 }, f0 + (Vec3::ONE - f0) / 21.0);
+                own = rescaled(waves.of_rgb(fresnel.f0()));
                 None
             }
             (Reflectance::Preset { fresnel, .. }, ..) => Some((&**fresnel, world.fresnel_mean(triangle.hit.instance))),

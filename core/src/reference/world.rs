@@ -27,9 +27,8 @@ pub struct World {
     instances: Vec<Placed>,
     /// Cosine-weighted mean reflectance of the metal of each material; zero where it has none.
     fresnel_means: Vec<Vec3>,
-    /// The metals at all wavelengths, by material; empty when colours are traced.
-    metals: Vec<Option<Arc<MetalWaves>>>,
-    has_waves: bool,
+    /// The metals at all wavelengths, by material; `None` when colours are traced.
+    metals: Option<Vec<Option<Arc<MetalWaves>>>>,
     /// Some surface lets light through.
     some_cut: bool,
     /// Some surface is not there from behind.
@@ -86,8 +85,7 @@ impl World {
             some_cut: instances.iter().any(|i| i.cut),
             some_one_sided: instances.iter().any(|i| !i.two_sided),
             fresnel_means: scene.materials.iter().map(mean).collect(),
-            metals: Vec::new(),
-            has_waves: false,
+            metals: None,
             scene: scene.clone(),
             accel,
             lights,
@@ -97,7 +95,8 @@ impl World {
     }
 
     /// The same scene traced by wavelength: metals by their n and k, colours as smooth spectra, light as that of D65 times
-    /// its colour. `metal` finds presets by id; returned are the ids that it does not know, which reflect as the rescaled form of the colour of their F0.
+    /// its colour. `metal` finds presets by id; returned are the ids that it does not know, which reflect as the rescaled
+    /// form of the colour of their F0.
     pub fn by_wavelength(mut self, metal: impl Fn(&str) -> Option<Preset>) -> (World, Vec<String>) {
         let mut unknown = Vec::new();
         let mut find = |material: &Material| {
@@ -108,14 +107,13 @@ impl World {
             }
             found
         };
-        self.metals = self.scene.materials.iter().map(&mut find).collect();
-        self.has_waves = true;
+        self.metals = Some(self.scene.materials.iter().map(&mut find).collect());
         (self, unknown)
     }
 
     /// The metals at all wavelengths, by material; `None` when colours are traced.
     pub(super) fn wavelengths(&self) -> Option<&[Option<Arc<MetalWaves>>]> {
-        self.has_waves.then_some(&self.metals)
+        self.metals.as_deref()
     }
 
     /// The scene.
@@ -132,7 +130,7 @@ impl World {
     pub fn sample(&self, view: &View, pixel: UVec2, index: u32) -> PathSample {
         let mut sampler = PathSampler::new(view.seed, pixel, index);
         let [x, y, z, _] = sampler.next4();
-        let waves = if self.has_waves { Waves::draw(z) } else { Waves::Rgb };
+        let waves = if self.metals.is_some() { Waves::draw(z) } else { Waves::Rgb };
         let size = view.size.as_vec2();
         let start = view.camera.ray((pixel.as_vec2() + Vec2::new(x, y)) / size, size.x / size.y);
         let ray = Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY };
@@ -186,7 +184,7 @@ impl World {
     }
 
     pub(super) fn metal(&self, instance: u32) -> Option<&MetalWaves> {
-        self.metals.get(self.scene.instances[instance as usize].material)?.as_deref()
+        self.metals.as_ref()?.get(self.scene.instances[instance as usize].material)?.as_deref()
     }
 
     pub(super) fn fresnel_mean(&self, instance: u32) -> Vec3 {

@@ -43,6 +43,26 @@ fn classical_source(index: u32) -> mat2x3f { return mat2x3f(vec3f(0.0, 1.0, 0.0)
 /// Samples per pixel and frame when nothing is set.
 const SAMPLES: u32 = 16;
 
+/// How microfacets mask each other: a property of the surface, shared by methods that draw the same one.
+pub const MASKING: ParamSpec = ParamSpec {
+    key: "masking",
+    label: "Masking",
+    unit: "",
+    kind: ParamKind::Choice { options: &["correlated", "separable"], default: 0 },
+    help: "Smith masking-shadowing: height-correlated, or the product of both sides.",
+    affects: Affects::Frame,
+};
+
+/// Whether light bounces between microfacets; shared likewise.
+pub const MULTIPLE_SCATTERING: ParamSpec = ParamSpec {
+    key: "multiple-scattering",
+    label: "Multiple scattering",
+    unit: "",
+    kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
+    help: "Light that bounces between microfacets (reciprocal Kulla-Conty form).",
+    affects: Affects::Frame,
+};
+
 /// Settings of this method.
 pub const PARAMS: &[ParamSpec] = &[
     ParamSpec {
@@ -54,22 +74,8 @@ pub const PARAMS: &[ParamSpec] = &[
                reads the map at the level of each sample's footprint.",
         affects: Affects::Frame,
     },
-    ParamSpec {
-        key: "masking",
-        label: "Masking",
-        unit: "",
-        kind: ParamKind::Choice { options: &["correlated", "separable"], default: 0 },
-        help: "Smith masking-shadowing: height-correlated, or the product of both sides.",
-        affects: Affects::Frame,
-    },
-    ParamSpec {
-        key: "multiple-scattering",
-        label: "Multiple scattering",
-        unit: "",
-        kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
-        help: "Light that bounces between microfacets (reciprocal Kulla-Conty form).",
-        affects: Affects::Frame,
-    },
+    MASKING,
+    MULTIPLE_SCATTERING,
     ParamSpec {
         key: "fresnel",
         label: "Fresnel form",

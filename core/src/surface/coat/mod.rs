@@ -30,5 +30,8 @@ pub fn eval(wo: Vec3, wi: Vec3, alpha: f32, masking: Masking) -> f32 {
 /// A surface below is multiplied by this toward `wo` and toward `wi`, once for each crossing, which keeps the whole
 /// reciprocal and below one. KHR_materials_clearcoat's sample form takes `1 - coat F(<wo, n>)` once.
 pub fn transmission(w: Vec3, alpha: f32, coat: f32, masking: Masking) -> f32 {
+    if coat == 0.0 {
+        return 1.0;
+    }
     1.0 - coat * dielectric::albedo(w, Vec2::splat(alpha), F0, 1.0, masking)
 }

@@ -12,6 +12,7 @@ use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuError, WgpuSetup, Wg
 use eframe::wgpu;
 
 use super::stage::{Live, LossLog, Stage};
+use super::theme;
 use super::workbench::{Options, Workbench};
 use crate::failure::Failure;
 
@@ -23,6 +24,8 @@ struct App {
     workbench: Workbench,
     /// Why the program ends, for [`run`].
     end: Arc<OnceLock<String>>,
+    /// The window's surface encodes what is written to it.
+    encodes: bool,
 }
 
 impl eframe::App for App {
@@ -42,6 +45,11 @@ impl eframe::App for App {
             }
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        let encoded = theme::background(visuals);
+        if self.encodes { egui::Rgba::from(visuals.panel_fill).to_array() } else { encoded }
     }
 }
 
@@ -64,8 +72,9 @@ pub fn run(options: Options) -> Result<(), Failure> {
         let (end, gpu, losses) = (end.clone(), gpu.clone(), losses.clone());
         move |cc| {
             let render = cc.wgpu_render_state.clone().ok_or("the window has no graphics device")?;
+            let encodes = render.target_format.is_srgb();
             let stage = live_stage(render, &gpu, losses);
-            Ok(Box::new(App { workbench: Workbench::new(&cc.egui_ctx, options, stage), end }))
+            Ok(Box::new(App { workbench: Workbench::new(&cc.egui_ctx, options, stage), end, encodes }))
         }
     });
     let native = native_options();

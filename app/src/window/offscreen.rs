@@ -18,6 +18,7 @@ use eframe::wgpu;
 use glam::{UVec2, Vec3, Vec4};
 
 use super::stage::{Live, LossLog, Stage};
+use super::theme;
 use super::workbench::Workbench;
 
 /// Bytes are sRGB-encoded as egui makes them: the format must not encode again.
@@ -207,7 +208,7 @@ impl Offscreen {
                     resolve_target: None,
                     depth_slice: None,
                     ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        load: wgpu::LoadOp::Clear(background(&self.ctx)),
                         store: wgpu::StoreOp::Store,
                     },
                 })],
@@ -219,6 +220,12 @@ impl Offscreen {
         queue.submit(before.into_iter().chain([encoder.finish()]));
         target
     }
+}
+
+/// What no panel covers: the fill of panels, as encoded bytes.
+fn background(ctx: &egui::Context) -> wgpu::Color {
+    let [r, g, b, a] = theme::background(&ctx.global_style().visuals).map(f64::from);
+    wgpu::Color { r, g, b, a }
 }
 
 /// Encoded bytes of opaque pixels as linear values; writing them as a PNG gives the same bytes again.

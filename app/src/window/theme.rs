@@ -104,3 +104,9 @@ fn light() -> Visuals {
     visuals.widgets.inactive.fg_stroke = Stroke::new(1.0, grey(40));
     visuals
 }
+
+/// Encoded colour that windows are cleared to: panels need not be filled once more, which takes a software rasteriser as
+/// long as the picture does.
+pub fn background(visuals: &Visuals) -> [f32; 4] {
+    visuals.panel_fill.to_normalized_gamma_f32()
+}

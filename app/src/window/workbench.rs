@@ -216,7 +216,7 @@ impl Workbench {
             files.banner_ui(ui, &mut context);
         }
         let middle = ui.available_rect_before_wrap();
-        let plain = egui::Frame::new().fill(ui.visuals().panel_fill);
+        let plain = egui::Frame::NONE;
         egui::CentralPanel::default().frame(plain).show(ui, |ui| match start {
             Some(page) => {
                 if page.ui(ui, &mut context, files.is_modal()) {

@@ -11,14 +11,16 @@ use glam::{Affine3A, UVec2, Vec3};
 use libtest_mimic::Trial;
 
 use super::server::Server;
-use super::statistics::Comparison;
-use super::{both, effort, scenes};
+use super::{Pair, effort, scenes};
 
 /// Pixels of a picture, which the ball fills to its corners.
-const SIZE: UVec2 = UVec2::new(24, 24);
-/// Pictures of each renderer, and paths through a pixel of each.
-const BATCHES: u32 = 16;
-const SAMPLES: u32 = 128;
+const SIZE: UVec2 = UVec2::new(64, 64);
+/// Paths through a pixel of a picture.
+const SAMPLES: u32 = 64;
+/// Least and most pictures of each renderer.
+const BATCHES: [u32; 2] = [16, 256];
+/// Noise of the difference of the means at which there are enough: small lamps in smooth balls take many.
+const NOISE: f64 = 0.002;
 /// Largest relative difference of the means.
 const MEAN: f64 = 0.01;
 const METALS: [&str; 2] = ["Au", "Al"];
@@ -53,15 +55,12 @@ fn balls(map: PathBuf) {
         for roughness in ROUGHNESSES {
             let mut scene = ball(id, roughness);
             scene.environment = Some(environment.clone());
-            let (ours, theirs) = both(&mut server, &Arc::new(scene), SIZE, SAMPLES * effort(), BATCHES);
-            let c = Comparison::new(&ours, &theirs);
-            println!(
-                "{name} | {id} | {roughness} | means {:.3} % (noise {:.3} %) | pixels {:.2} % | |z| <= 3 {:.2} %",
-                100.0 * c.mean,
-                100.0 * c.mean_deviation,
-                100.0 * c.absolute,
-                100.0 * c.within
-            );
+            let mut pair = Pair::new(&mut server, &Arc::new(scene), SIZE, SAMPLES * effort());
+            let mut c = pair.until(BATCHES[0]);
+            while c.noise[0].hypot(c.noise[1]) > NOISE && pair.batches() < BATCHES[1] {
+                c = pair.until(2 * pair.batches());
+            }
+            println!("{name}, {id}, roughness {roughness}: {c}");
             if c.mean > MEAN {
                 failed.push((id, roughness, c.mean));
             }

@@ -2,7 +2,7 @@
 //!
 //! Needs a Python with the packages `mitsuba` and `numpy`: that of `BURNISH_PYTHON`, else `python3`. Compared are masking
 //! apart for light and view, single scattering and one index per channel, which is what Mitsuba has.
-//! `BURNISH_ORACLE=4` takes four times as many paths.
+//! `BURNISH_ORACLE=4` takes four times as many paths, `BURNISH_MITSUBA_VARIANT` names another variant than `scalar_rgb`.
 
 mod cost;
 mod maps;
@@ -78,34 +78,48 @@ fn effort() -> u32 {
     std::env::var("BURNISH_ORACLE").ok().and_then(|text| text.parse().ok()).unwrap_or(1).max(1)
 }
 
-/// Both render `batches` pictures; ours come first.
-fn both(server: &mut Server, scene: &Arc<Scene>, size: UVec2, samples: u32, batches: u32) -> (Batches, Batches) {
-    server.load(scene, &view(scene, size), "scalar_rgb");
-    let world = World::new(scene, options());
-    let (mut ours, mut theirs) = (Batches::default(), Batches::default());
-    for seed in 1..=batches {
-        ours.add(&traced(&world, &scene.cameras[0], size, samples, seed));
-        theirs.add(&server.render(samples, seed).0);
+/// Pictures of both renderers.
+struct Pair<'a> {
+    server: &'a mut Server,
+    scene: Arc<Scene>,
+    world: World,
+    size: UVec2,
+    samples: u32,
+    ours: Batches,
+    theirs: Batches,
+}
+
+impl<'a> Pair<'a> {
+    fn new(server: &'a mut Server, scene: &Arc<Scene>, size: UVec2, samples: u32) -> Pair<'a> {
+        let variant = std::env::var("BURNISH_MITSUBA_VARIANT").unwrap_or_else(|_| "scalar_rgb".into());
+        server.load(scene, &view(scene, size), &variant);
+        let world = World::new(scene, options());
+        let scene = scene.clone();
+        Pair { server, scene, world, size, samples, ours: Batches::default(), theirs: Batches::default() }
     }
-    (ours, theirs)
+
+    fn batches(&self) -> u32 {
+        self.ours.count()
+    }
+
+    /// Renders until there are so many pictures of each.
+    fn until(&mut self, batches: u32) -> Comparison {
+        for seed in self.batches() + 1..=batches {
+            self.ours.add(&traced(&self.world, &self.scene.cameras[0], self.size, self.samples, seed));
+            self.theirs.add(&self.server.render(self.samples, seed).0);
+        }
+        Comparison::new(&self.ours, &self.theirs)
+    }
 }
 
 fn same_picture(entry: &scenes::Entry) {
     let scene = Arc::new((entry.build)());
     scene.validate().expect("a sound scene");
     let mut server = Server::start(&format!("oracle-{}", entry.name.replace(' ', "-")));
-    let (ours, theirs) = both(&mut server, &scene, SIZE, entry.samples * effort(), BATCHES);
-    let c = Comparison::new(&ours, &theirs);
-    println!(
-        "{}: |z| <= 3 for {:.3} %, spread of z {:.3}, means differ by {:.3} % (noise {:.3} %), pixels by {:.2} %",
-        entry.name,
-        100.0 * c.within,
-        c.spread,
-        100.0 * c.mean,
-        100.0 * c.mean_deviation,
-        100.0 * c.absolute
-    );
-    keep(entry.name, &ours, &theirs);
+    let mut pair = Pair::new(&mut server, &scene, SIZE, entry.samples * effort());
+    let c = pair.until(BATCHES);
+    println!("{}: {c}", entry.name);
+    keep(entry.name, &pair.ours, &pair.theirs);
     assert!(c.within >= WITHIN, "{} of the pixels agree", c.within);
     assert!(c.mean <= MEAN, "the means differ by {}", c.mean);
 }

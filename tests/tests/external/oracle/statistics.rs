@@ -1,5 +1,7 @@
 //! Whether two renderers agree, judged by the spread of their own pictures.
 
+use std::fmt::{self, Display, Formatter};
+
 use glam::{DVec3, Vec3};
 
 /// Largest distance in standard deviations that counts as agreement.
@@ -31,6 +33,11 @@ impl Batches {
             *mean += before / f64::from(self.count);
             *deviations += before * (x.as_dvec3() - *mean);
         }
+    }
+
+    /// Pictures that were added.
+    pub fn count(&self) -> u32 {
+        self.count
     }
 
     /// Means of the pixels.
@@ -65,8 +72,8 @@ pub struct Comparison {
     pub spread: f64,
     /// Largest relative difference of the means of the picture over the channels.
     pub mean: f64,
-    /// Its standard deviation.
-    pub mean_deviation: f64,
+    /// Standard deviations of the two means, relative to the second, as if pixels were independent.
+    pub noise: [f64; 2],
     /// Sum of the absolute differences over the sum of the second picture.
     pub absolute: f64,
 }
@@ -92,13 +99,20 @@ impl Comparison {
         }
         let count = 3.0 * a.mean.len().max(1) as f64;
         let (x, y) = (a.total(), b.total());
-        let deviation = a.total_variance() + b.total_variance();
         Comparison {
             within: within as f64 / count,
             spread: (squares / noisy.max(1) as f64).sqrt(),
             mean: ((x - y) / y).abs().max_element(),
-            mean_deviation: (deviation / (y * y)).max_element().sqrt(),
+            noise: [a, b].map(|batches| (batches.total_variance() / (y * y)).max_element().sqrt()),
             absolute: absolute / all,
         }
+    }
+}
+
+impl Display for Comparison {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Comparison { within, spread, mean, noise: [ours, theirs], absolute } = self;
+        write!(f, "|z| <= 3 for {:.3} %, spread of z {spread:.3}, means {:.3} % apart ", 100.0 * within, 100.0 * mean)?;
+        write!(f, "(noise {:.3} and {:.3} %), pixels {:.2} %", 100.0 * ours, 100.0 * theirs, 100.0 * absolute)
     }
 }

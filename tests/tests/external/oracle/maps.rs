@@ -56,10 +56,7 @@ fn balls(map: PathBuf) {
             let mut scene = ball(id, roughness);
             scene.environment = Some(environment.clone());
             let mut pair = Pair::new(&mut server, &Arc::new(scene), SIZE, SAMPLES * effort());
-            let mut c = pair.until(BATCHES[0]);
-            while c.noise[0].hypot(c.noise[1]) > NOISE && pair.batches() < BATCHES[1] {
-                c = pair.until(2 * pair.batches());
-            }
+            let c = pair.compare(BATCHES, NOISE);
             println!("{name}, {id}, roughness {roughness}: {c}");
             if c.mean > MEAN {
                 failed.push((id, roughness, c.mean));

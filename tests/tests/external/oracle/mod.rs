@@ -24,8 +24,8 @@ use libtest_mimic::Trial;
 use server::Server;
 use statistics::{Batches, Comparison};
 
-/// Independent pictures of each renderer.
-const BATCHES: u32 = 64;
+/// Least and most independent pictures of each renderer.
+const BATCHES: [u32; 2] = [64, 1024];
 /// Pixels of a picture.
 const SIZE: UVec2 = UVec2::new(48, 36);
 /// Least share of pixels and channels within three standard deviations of each other.
@@ -98,13 +98,19 @@ impl<'a> Pair<'a> {
         Pair { server, scene, world, size, samples, ours: Batches::default(), theirs: Batches::default() }
     }
 
-    fn batches(&self) -> u32 {
-        self.ours.count()
+    /// Renders the least number of pictures of each, then more until the difference of the means is known to `noise`,
+    /// relative to them, or there are most.
+    fn compare(&mut self, [least, most]: [u32; 2], noise: f64) -> Comparison {
+        let mut comparison = self.until(least);
+        while comparison.noise[0].hypot(comparison.noise[1]) > noise && self.ours.count() < most {
+            comparison = self.until(2 * self.ours.count());
+        }
+        comparison
     }
 
     /// Renders until there are so many pictures of each.
     fn until(&mut self, batches: u32) -> Comparison {
-        for seed in self.batches() + 1..=batches {
+        for seed in self.ours.count() + 1..=batches {
             self.ours.add(&traced(&self.world, &self.scene.cameras[0], self.size, self.samples, seed));
             self.theirs.add(&self.server.render(self.samples, seed).0);
         }
@@ -117,7 +123,7 @@ fn same_picture(entry: &scenes::Entry) {
     scene.validate().expect("a sound scene");
     let mut server = Server::start(&format!("oracle-{}", entry.name.replace(' ', "-")));
     let mut pair = Pair::new(&mut server, &scene, SIZE, entry.samples * effort());
-    let c = pair.until(BATCHES);
+    let c = pair.compare(BATCHES, MEAN / 4.0);
     println!("{}: {c}", entry.name);
     keep(entry.name, &pair.ours, &pair.theirs);
     assert!(c.within >= WITHIN, "{} of the pixels agree", c.within);

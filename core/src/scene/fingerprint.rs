@@ -44,7 +44,8 @@ impl fmt::Debug for Digest {
 impl Fingerprint {
     /// That of a scene. Takes about a second per gigabyte of meshes, images and environment, on one core.
     pub fn new(scene: &Scene) -> Fingerprint {
-        let Scene { name: _, meshes, instances, materials, images, lights, cameras: _, environment } = scene;
+        let Scene { name: _, meshes, instances, materials, images, lights, cameras: _, environment, subject: _ } =
+            scene;
         Fingerprint {
             geometry: digest(|h| {
                 h.parts(meshes, |h, mesh| h.mesh(mesh));

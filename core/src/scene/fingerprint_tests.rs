@@ -40,6 +40,7 @@ fn scene() -> Scene {
         lights: vec![light],
         cameras: vec![],
         environment: Some(Arc::new(Environment::new("sky", 2, 1, vec![Vec3::ONE; 2]))),
+        subject: vec![0],
     }
 }
 

@@ -37,6 +37,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Light from infinitely far away; `None` lets the caller choose.
     pub environment: Option<Arc<Environment>>,
+    /// Indices of the instances that a picture is about, on which errors are reported; all when empty.
+    pub subject: Vec<usize>,
 }
 
 /// Indexed triangles in local space. Attribute lists are as long as `positions`, or empty where absent.

@@ -42,6 +42,8 @@ impl Scene {
             let finite = camera.world_from_view.is_finite();
             faults.at(format!("camera {i} '{}'", camera.name)).unless(finite, "the transform is not finite");
         }
+        let subject = self.subject.iter().all(|i| *i < self.instances.len());
+        faults.at("subject".into()).unless(subject, "an index is out of range");
         if let Some(environment) = &self.environment {
             check_environment(environment, &mut faults.at("environment".into()));
         }

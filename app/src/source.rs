@@ -36,19 +36,24 @@ pub struct Opened {
 
 impl SceneArg {
     pub fn open(&self) -> Result<Opened, Failure> {
-        if let Some(name) = gallery_name(&self.scene) {
-            let scene = gallery::open(name).map_err(|e| Failure::input(Path::new(&self.scene), e))?;
-            return Ok(Opened { scene, notices: Vec::new(), from_gallery: true, document: None, missing: Vec::new() });
-        }
-        let path = Path::new(&self.scene);
-        if document::is_document(path) {
-            return open_document(path);
-        }
-        let imported = import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
-        let notices = imported.notices.iter().map(ToString::to_string).collect();
-        let scene = imported.scene;
-        Ok(Opened { scene, notices, from_gallery: false, document: None, missing: Vec::new() })
+        open(&self.scene)
     }
+}
+
+/// Opens a SCENE.
+pub fn open(scene: &OsStr) -> Result<Opened, Failure> {
+    if let Some(name) = gallery_name(scene) {
+        let scene = gallery::open(name).map_err(|e| Failure::input(Path::new(scene), e))?;
+        return Ok(Opened { scene, notices: Vec::new(), from_gallery: true, document: None, missing: Vec::new() });
+    }
+    let path = Path::new(scene);
+    if document::is_document(path) {
+        return open_document(path);
+    }
+    let imported = import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
+    let notices = imported.notices.iter().map(ToString::to_string).collect();
+    let scene = imported.scene;
+    Ok(Opened { scene, notices, from_gallery: false, document: None, missing: Vec::new() })
 }
 
 fn open_document(path: &Path) -> Result<Opened, Failure> {

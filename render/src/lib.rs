@@ -4,6 +4,7 @@
 //! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere. Lighting formulas live in `burnish-core` as leaves; here are
 //! the passes that join and run them.
 
+pub mod bench;
 pub mod device;
 pub mod error;
 mod frame;

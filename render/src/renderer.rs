@@ -1,6 +1,7 @@
 //! Draws views of a scene into pictures: every frame in full, then read back.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::material::Material;
@@ -81,6 +82,41 @@ impl Renderer {
         self.set_scene(&Arc::new(scene))
     }
 
+    /// Draws the first frame of a view and returns its seconds: from giving it to the device until that has
+    /// drawn it. On a card that takes in the way to it and back.
+    pub fn time_frame(&mut self, view: &View) -> Result<f64, RenderError> {
+        let passes = self.loader.passes.clone();
+        let gpu = &passes.gpu;
+        let (targets, sums) = self.begin(&passes, view)?;
+        let settings = FrameSettings::new(&view.settings);
+        let start = Instant::now();
+        let jitter = Jitter { frame: 0, frames: 1 };
+        let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, &settings, jitter);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoding.whole(&passes, &mut encoder, &self.resident, &targets);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        let secs = start.elapsed().as_secs_f64();
+        gpu.check()?;
+        self.targets = Some((targets, sums));
+        Ok(secs)
+    }
+
+    /// Makes the scene and the targets right for a view.
+    fn begin(&mut self, passes: &Passes, view: &View) -> Result<(Targets, Sums), RenderError> {
+        let gpu = &passes.gpu;
+        check_size(gpu, view.size)?;
+        let settings = FrameSettings::new(&view.settings);
+        if settings.masking != self.resident.masking {
+            let scene = self.resident.scene.clone();
+            self.resident = self.loader.load(&scene, settings.masking, Some(&self.resident))?;
+        }
+        Ok(match self.targets.take() {
+            Some((targets, sums)) if targets.size == view.size => (targets, sums),
+            _ => (Targets::new(passes, view.size), Sums::new(gpu, view.size)),
+        })
+    }
+
     /// Draws the view and returns scene-linear radiance.
     pub fn render(&mut self, view: &View) -> Result<Picture, RenderError> {
         let picture = self.render_while(view, |_| true)?;
@@ -97,16 +133,8 @@ impl Renderer {
     ) -> Result<Option<Picture>, RenderError> {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
-        check_size(gpu, view.size)?;
+        let (targets, mut sums) = self.begin(&passes, view)?;
         let settings = FrameSettings::new(&view.settings);
-        if settings.masking != self.resident.masking {
-            let scene = self.resident.scene.clone();
-            self.resident = self.loader.load(&scene, settings.masking, Some(&self.resident))?;
-        }
-        let (targets, mut sums) = match self.targets.take() {
-            Some((targets, sums)) if targets.size == view.size => (targets, sums),
-            _ => (Targets::new(&passes, view.size), Sums::new(gpu, view.size)),
-        };
         let frames = view.jitter_frames.max(1);
         for frame in 0..frames {
             if !going_on(frame as f32 / frames as f32) {

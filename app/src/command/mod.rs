@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod chart;
 mod compare;
 mod doctor;
 mod export;
@@ -41,6 +42,8 @@ pub enum Command {
     Snapshot(snapshot::Args),
     /// Measure how different two pictures are
     Compare(compare::Args),
+    /// Chart what lighting methods cost against how wrong they are
+    Chart(chart::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
     Measure(measure::Args),
     /// Render balls of metals beside one another, one row for each Fresnel form
@@ -62,6 +65,7 @@ impl Command {
             Command::FresnelReport(args) => fresnel_report::run(args, out),
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
+            Command::Chart(args) => chart::run(args, out, err),
             Command::Measure(args) => measure::run(args, out),
             Command::FresnelBalls(args) => fresnel_balls::run(args, out),
             Command::FresnelTimes(args) => fresnel_times::run(args, out),

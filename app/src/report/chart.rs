@@ -71,6 +71,15 @@ impl Chart {
         )
     }
 
+    /// The drawing as a file of its own, on a ground that `style` colours.
+    pub fn standalone(mut self, label: &str, style: &str) -> String {
+        let ground = format!("<style>{style}</style><rect class=\"ground\" width=\"100%\" height=\"100%\"/>\n");
+        self.body.insert_str(0, &ground);
+        let (width, height) = (self.width, self.height);
+        let size = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\"");
+        self.finish(label).replacen("<svg", &size, 1)
+    }
+
     /// Frame, grid, ticks and titles. Ticks of y stand left of the area, those of x below it.
     pub fn axes(&mut self, plot: &Plot) {
         let [left, top, width, height] = plot.area;

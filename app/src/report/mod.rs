@@ -3,6 +3,7 @@
 //! `study` has the numbers, `summary` the charts over all metals, `metal` the part about each; `chart` and `axis` draw.
 
 mod axis;
+pub mod bench;
 mod chart;
 mod html;
 mod looks;

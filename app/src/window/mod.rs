@@ -29,6 +29,7 @@ mod widget;
 mod workbench;
 
 pub use commands::{Command, Entry, Menu, TABLE};
+pub use files::Folders;
 pub use native::run;
 pub use panel::Pane;
 pub use preferences::Preferences;

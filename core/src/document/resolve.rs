@@ -132,6 +132,10 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
     let object_keys = object_keys(&model);
     place_objects(&mut scene, &object_keys, &model_keys, document, &mut materials);
     scene.materials = materials;
+    if !document.subject.is_empty() {
+        let chosen = |key: &String| document.subject.contains(key);
+        scene.subject = (0..object_keys.len()).filter(|i| chosen(&object_keys[*i])).collect();
+    }
 
     let map = document.environment.source.as_ref().and_then(|path| {
         let found = sources.environments.get(path).cloned();

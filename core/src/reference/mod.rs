@@ -26,16 +26,41 @@ mod tests;
 
 use glam::{UVec2, Vec3};
 
+use crate::lighting::{Cover, Coverage, Method, MethodId, MethodInfo};
 use crate::scene::Camera;
 
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, trace, trace_with};
-pub use settings::{Options, PARAMS, is_spectral};
+pub use settings::{COMPARED_PARAMS, Options, PARAMS, is_spectral};
 pub use world::World;
 
 /// Id of the method, as documents name it.
 pub const ID: &str = "reference";
+
+/// The method as others see it: in a comparison its cost is that of `samples` paths a pixel.
+#[derive(Debug)]
+pub struct Reference;
+
+static INFO: MethodInfo = MethodInfo {
+    id: MethodId(ID),
+    title: "Reference",
+    summary: "Unidirectional path tracing with multiple importance sampling: right but for noise.",
+    params: COMPARED_PARAMS,
+    coverage: Coverage {
+        lamps: Cover::Exact,
+        environment: Cover::Exact,
+        indirect_diffuse: Cover::Exact,
+        indirect_glossy: Cover::Exact,
+        emission: Cover::Exact,
+    },
+};
+
+impl Method for Reference {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+}
 
 /// What is looked at, and from where.
 #[derive(Clone, Debug)]

@@ -6,45 +6,61 @@ use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
 use crate::surface::fresnel::Form;
 use crate::surface::ggx::Masking;
 
+const BOUNCES: ParamSpec = ParamSpec {
+    key: "bounces",
+    label: "Bounces",
+    unit: "",
+    kind: ParamKind::Integer { min: 0, max: 1024, default: 64 },
+    help: "Most surfaces that light touches on its way to the eye, 1 for direct light only; 0 shows what glows by itself.",
+    affects: Affects::Frame,
+};
+
+const CLAMP: ParamSpec = ParamSpec {
+    key: "clamp",
+    label: "Clamp",
+    unit: "nit",
+    kind: ParamKind::Number { min: 0.0, max: 1e9, default: 0.0 },
+    help: "Largest radiance that a path brings back after its first surface, 0 for no limit. A clamped picture is \
+           not a reference; the light that was taken away is reported.",
+    affects: Affects::Frame,
+};
+
+const FRESNEL: ParamSpec = ParamSpec {
+    key: "fresnel",
+    label: "Fresnel form",
+    unit: "",
+    kind: ParamKind::Choice { options: &FormChoice::IDS, default: SPECTRAL },
+    help: "Form in which all metal presets are traced; spectral is the truth.",
+    affects: Affects::Prepare,
+};
+
+const WAVELENGTHS: ParamSpec = ParamSpec {
+    key: "spectral",
+    label: "Wavelengths",
+    unit: "",
+    kind: ParamKind::Toggle { default: false },
+    help: "Traces wavelengths instead of red, green and blue: metals by their n and k, colours as smooth spectra, \
+           light as that of D65 times its colour. Noisier; what several bounces do to a spectrum is kept.",
+    affects: Affects::Prepare,
+};
+
+/// Samples of every pixel: in a comparison the reference is a method among others, and these are its cost.
+const SAMPLES: ParamSpec = ParamSpec {
+    key: "samples",
+    label: "Samples",
+    unit: "per pixel",
+    kind: ParamKind::Integer { min: 1, max: super::MAX_SAMPLES as i64, default: 64 },
+    help: "Paths through a pixel.",
+    affects: Affects::Frame,
+};
+
 /// Settings of this method.
-pub const PARAMS: &[ParamSpec] = &[
-    ParamSpec {
-        key: "bounces",
-        label: "Bounces",
-        unit: "",
-        kind: ParamKind::Integer { min: 0, max: 1024, default: 64 },
-        help: "Most surfaces that light touches on its way to the eye, 1 for direct light only; 0 shows what glows by itself.",
-        affects: Affects::Frame,
-    },
-    ParamSpec {
-        key: "clamp",
-        label: "Clamp",
-        unit: "nit",
-        kind: ParamKind::Number { min: 0.0, max: 1e9, default: 0.0 },
-        help: "Largest radiance that a path brings back after its first surface, 0 for no limit. A clamped picture is \
-               not a reference; the light that was taken away is reported.",
-        affects: Affects::Frame,
-    },
-    classical::MASKING,
-    classical::MULTIPLE_SCATTERING,
-    ParamSpec {
-        key: "fresnel",
-        label: "Fresnel form",
-        unit: "",
-        kind: ParamKind::Choice { options: &FormChoice::IDS, default: SPECTRAL },
-        help: "Form in which all metal presets are traced; spectral is the truth.",
-        affects: Affects::Prepare,
-    },
-    ParamSpec {
-        key: "spectral",
-        label: "Wavelengths",
-        unit: "",
-        kind: ParamKind::Toggle { default: false },
-        help: "Traces wavelengths instead of red, green and blue: metals by their n and k, colours as smooth spectra, \
-               light as that of D65 times its colour. Noisier; what several bounces do to a spectrum is kept.",
-        affects: Affects::Prepare,
-    },
-];
+pub const PARAMS: &[ParamSpec] =
+    &[BOUNCES, CLAMP, classical::MASKING, classical::MULTIPLE_SCATTERING, FRESNEL, WAVELENGTHS];
+
+/// The same with the number of samples, which elsewhere is a question of how long one waits.
+pub const COMPARED_PARAMS: &[ParamSpec] =
+    &[SAMPLES, BOUNCES, CLAMP, classical::MASKING, classical::MULTIPLE_SCATTERING, FRESNEL, WAVELENGTHS];
 
 /// Place of `spectral` among [`FormChoice::IDS`].
 const SPECTRAL: usize = {

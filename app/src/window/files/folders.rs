@@ -43,6 +43,11 @@ impl Folders {
         self.cache.join("thumbnails")
     }
 
+    /// References and measurements of the bench, which can be made again.
+    pub fn bench(&self) -> PathBuf {
+        self.cache.join("bench")
+    }
+
     /// Metals and saved materials of the user.
     pub fn presets(&self) -> PathBuf {
         self.data.join("presets")

@@ -11,6 +11,7 @@ mod tests;
 
 use std::sync::LazyLock;
 
+use super::{Cover, Coverage, Method, MethodId, MethodInfo};
 use crate::leaf::Leaf;
 use crate::material::preset::{FormChoice, Tolerance};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
@@ -25,6 +26,30 @@ pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 
 /// Id of the method, as documents name it.
 pub const ID: &str = "classical";
+
+/// The method as others see it.
+#[derive(Debug)]
+pub struct Classical;
+
+static INFO: MethodInfo = MethodInfo {
+    id: MethodId(ID),
+    title: "Classical",
+    summary: "Prefiltered or sampled environment maps, infinitely far away; lamps by shadow maps.",
+    params: PARAMS,
+    coverage: Coverage {
+        lamps: Cover::Approximate,
+        environment: Cover::Approximate,
+        indirect_diffuse: Cover::None,
+        indirect_glossy: Cover::None,
+        emission: Cover::Exact,
+    },
+};
+
+impl Method for Classical {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+}
 
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {

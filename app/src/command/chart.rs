@@ -1,0 +1,260 @@
+//! `burnish chart`: what lighting methods cost against how wrong they are, on one scene or many.
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use burnish_core::file::write_atomic;
+use burnish_core::lighting::METHODS;
+use burnish_core::lighting::method::{self, Method, MethodId, Sweep};
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, PathTimer, Record, Rig, Shot, Truth};
+use burnish_core::param::Settings;
+use burnish_core::reference::{self, Control};
+use burnish_core::scene::{Camera, Scene, gallery};
+use burnish_render::{Gpu, Passes};
+use glam::UVec2;
+
+use crate::failure::{Exit, Failure, printable};
+use crate::report::bench::{drawing, page};
+use crate::window::Folders;
+use crate::{interrupt, source, value};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Model files (.gltf, .glb, .obj), documents (.burnish) or gallery:NAME[?key=value&...] [default: gallery:workbench]
+    scenes: Vec<OsString>,
+    /// All scenes of the gallery
+    #[arg(long)]
+    gallery: bool,
+    /// Lighting methods to compare
+    #[arg(long, value_name = "METHOD,...", value_delimiter = ',', default_value = "classical,reference")]
+    methods: Vec<String>,
+    /// Values that a setting takes; without METHOD in all methods that have it; all combinations are measured; repeatable
+    #[arg(long, value_name = "[METHOD.]KEY=A,B,...", value_parser = str::parse::<Sweep>)]
+    sweep: Vec<Sweep>,
+    /// Object that the pictures are about, by name; repeatable [default: the scene's own subject, else all]
+    #[arg(long, value_name = "NAME")]
+    subject: Vec<String>,
+    /// Environment map, .hdr or .exr [default: that of the document or scene, else a studio]
+    #[arg(long, value_name = "FILE")]
+    env: Option<PathBuf>,
+    /// Pixels of the pictures
+    #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = value::size)]
+    size: UVec2,
+    /// Paths through a pixel of the reference, 2 to 16777216
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
+    samples: u32,
+    /// Measure everything anew: read nothing that was kept from earlier runs
+    #[arg(long)]
+    fresh: bool,
+    /// Folder of what is kept [default: the user's cache]
+    #[arg(long, value_name = "FOLDER")]
+    cache: Option<PathBuf>,
+    /// Chart to write, .svg
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Table to write, .csv; its columns are described in docs/chart.md
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Page to write, .html, with the chart and all figures
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+}
+
+pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
+    let chosen = methods(&args.methods)?;
+    let candidates = candidates(&chosen, &args.sweep)?;
+    let shots = shots(&args, err)?;
+    let cache = cache(&args)?;
+    let stop = interrupt::watch().map_err(Failure::resources)?;
+    let control = Control::default();
+    let gpu = Gpu::new().map_err(Failure::resources)?;
+    let passes = Arc::new(Passes::new(&gpu));
+    let mut rig = rig(&gpu, &passes, &control)?;
+
+    let mut records = Vec::new();
+    let mut failed = None;
+    for shot in &shots {
+        match measure(shot, &candidates, &args, &mut rig, &cache, (&stop, &control), err) {
+            Ok(more) => records.extend(more),
+            Err(error) => {
+                failed = Some(failure(&shot.name, &error));
+                break;
+            }
+        }
+    }
+    // What was measured before a fault is written all the same.
+    if !records.is_empty() {
+        write(&args, &records, out)?;
+    }
+    failed.map_or(Ok(Exit::Ok), Err)
+}
+
+fn methods(names: &[String]) -> Result<Vec<&'static dyn Method>, Failure> {
+    let mut chosen: Vec<&'static dyn Method> = Vec::new();
+    for name in names {
+        let found = method::find(METHODS, name).map_err(|e| Failure::usage(format!("--methods: {e}")))?;
+        if !chosen.iter().any(|known| known.info().id == found.info().id) {
+            chosen.push(found);
+        }
+    }
+    Ok(chosen)
+}
+
+fn candidates(methods: &[&dyn Method], sweeps: &[Sweep]) -> Result<Vec<Candidate>, Failure> {
+    let usage = |e: method::SweepError| Failure::usage(format!("--sweep: {e}"));
+    method::check_sweeps(methods, sweeps).map_err(usage)?;
+    let mut list = Vec::new();
+    for chosen in methods {
+        let all = method::combinations(*chosen, sweeps).map_err(usage)?;
+        list.extend(all.into_iter().map(|settings| Candidate { method: chosen.info().id, settings }));
+    }
+    Ok(list)
+}
+
+fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
+    let mut names = args.scenes.clone();
+    if args.gallery {
+        names.extend(gallery::list().iter().map(|scene| format!("gallery:{}", scene.name).into()));
+    }
+    if names.is_empty() {
+        names.push(source::DEFAULT_SCENE.into());
+    }
+    let environment = args.env.as_deref().map(source::environment).transpose()?;
+    let mut shots = Vec::new();
+    for name in &names {
+        let source::Opened { mut scene, mut notices, from_gallery, document, .. } = source::open(name)?.complete()?;
+        if let Some((environment, more)) = &environment {
+            scene.environment = Some(environment.clone());
+            notices.extend(more.iter().cloned());
+        } else if scene.environment.is_none() {
+            scene.environment = Some(Arc::new(gallery::studio()));
+        }
+        let name = name.to_string_lossy().to_string();
+        for notice in notices {
+            writeln!(err, "burnish: notice: {}: {}", printable(&name), printable(&notice))?;
+        }
+        if !args.subject.is_empty() {
+            scene.subject = subject(&scene, &args.subject)?;
+        }
+        let camera = match (&document, scene.cameras.first()) {
+            (Some(document), _) => document.view.camera.camera(),
+            (None, Some(camera)) if from_gallery => camera.clone(),
+            _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
+        };
+        let exposure_ev = document.as_ref().map_or(0.0, |document| document.view.exposure_ev as f32);
+        let metals = document.iter().flat_map(|document| &document.presets);
+        let metals = metals.map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
+        shots.push(Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals });
+    }
+    Ok(shots)
+}
+
+/// The instances of these names.
+fn subject(scene: &Scene, names: &[String]) -> Result<Vec<usize>, Failure> {
+    let mut subject = Vec::new();
+    for name in names {
+        let before = subject.len();
+        subject.extend((0..scene.instances.len()).filter(|i| scene.instances[*i].name == *name));
+        if subject.len() == before {
+            let known: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+            return Err(Failure::usage(format!(
+                "--subject {name}: no such object in `{}`; there are: {}",
+                printable(&scene.name),
+                printable(&known.join(", "))
+            )));
+        }
+    }
+    Ok(subject)
+}
+
+fn cache(args: &Args) -> Result<Cache, Failure> {
+    let folder = args.cache.clone().or_else(|| Some(Folders::of_user()?.bench()));
+    let cache = folder.map_or_else(Cache::none, |folder| Cache::within(&folder));
+    Ok(if args.fresh { cache.fresh() } else { cache })
+}
+
+fn rig<'a>(gpu: &Gpu, passes: &Arc<Passes>, control: &Control) -> Result<Rig<'a>, Failure> {
+    let mut timers = burnish_render::bench::timers(passes);
+    timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
+    let calibrate = burnish_render::bench::calibration(passes).map_err(Failure::resources)?;
+    Ok(Rig { timers, calibrate: Box::new(calibrate), machine: gpu.report().name.clone() })
+}
+
+/// The records of a shot; a line is written for each step that is new.
+fn measure(
+    shot: &Shot,
+    candidates: &[Candidate],
+    args: &Args,
+    rig: &mut Rig<'_>,
+    cache: &Cache,
+    (stop, control): (&AtomicBool, &Control),
+    err: &mut dyn Write,
+) -> Result<Vec<Record>, BenchError> {
+    let mut told = String::new();
+    let mut progress = |words: &str| {
+        if stop.load(Ordering::Relaxed) {
+            control.cancel();
+            return Err(BenchError::Cancelled);
+        }
+        if told != words {
+            told = words.into();
+            // Progress that nobody can read does no harm.
+            let _ = writeln!(err, "burnish: {}", printable(words));
+        }
+        Ok(())
+    };
+    progress(&format!("{}: tracing the reference", shot.name))?;
+    let settings = Settings::new(reference::PARAMS);
+    let truth = std::thread::scope(|scope| {
+        let tracing = scope.spawn(|| Truth::trace(shot, &settings, args.samples, cache, control));
+        while !tracing.is_finished() {
+            if stop.load(Ordering::Relaxed) {
+                control.cancel();
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        tracing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })?;
+    bench::measure(shot, &truth, candidates, rig, cache, &mut progress)
+}
+
+fn failure(scene: &str, error: &BenchError) -> Failure {
+    match error {
+        BenchError::Cancelled => Failure {
+            exit: Exit::Cancelled,
+            messages: vec!["cancelled; what was measured is kept: the same command without --fresh goes on".into()],
+        },
+        error => Failure::resources(format!("{scene}: {error}")),
+    }
+}
+
+fn write(args: &Args, records: &[Record], out: &mut dyn Write) -> Result<(), Failure> {
+    let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
+    let files = [(&args.out, drawing as fn(&[Record]) -> String), (&args.csv, bench::csv as fn(&[Record]) -> String)];
+    let html = |records: &[Record]| page(records, METHODS, &format!("burnish {command}"));
+    let texts = files.iter().filter_map(|(file, text)| file.as_ref().map(|file| (file, text(records))));
+    for (file, text) in texts.chain(args.html.as_ref().map(|file| (file, html(records)))) {
+        write_atomic(file, text.as_bytes()).map_err(Failure::resources)?;
+        writeln!(out, "wrote {}: {} measurements", file.display(), records.len())?;
+    }
+    for record in records {
+        let Some((errors, floor)) = record.of(record.region()) else { continue };
+        writeln!(
+            out,
+            "{:24} {:10} {:>10.2} ms {:>8.2} x  relMSE {:.3e}{} FLIP {:.4} bias {:+.2} %  {}",
+            printable(&record.scene),
+            record.method,
+            1e3 * record.frame_secs,
+            record.ratio(),
+            errors.relmse,
+            if errors.relmse <= floor.relmse { " (noise)" } else { "" },
+            errors.flip,
+            100.0 * errors.bias,
+            record.settings_text()
+        )?;
+    }
+    Ok(())
+}

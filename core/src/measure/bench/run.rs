@@ -1,0 +1,128 @@
+//! Measuring: candidates in turns, so that a busy machine slows all alike.
+
+use super::{BenchError, Cache, FrameTimer, Frames, Record, Region, Rig, Shot, Truth};
+use crate::lighting::method::MethodId;
+use crate::measure::errors;
+use crate::param::Settings;
+
+/// Seconds of frames of a candidate that are enough, within [`ROUNDS`].
+const ENOUGH_SECS: f64 = 2.0;
+/// Fewest and most frames of a candidate that are timed.
+const ROUNDS: [usize; 2] = [3, 60];
+
+/// A method with settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Which method.
+    pub method: MethodId,
+    /// Made of its parameters.
+    pub settings: Settings,
+}
+
+/// What is going on, for people; the same words may come many times.
+pub type Progress<'a> = &'a mut dyn FnMut(&str) -> Result<(), BenchError>;
+
+/// A candidate on its way.
+struct Entry {
+    index: usize,
+    frames: Box<dyn Frames>,
+    /// Seconds of its frames, and of the calibration pass before each.
+    secs: Vec<f64>,
+    calibration: Vec<f64>,
+}
+
+impl Entry {
+    fn is_done(&self) -> bool {
+        let total: f64 = self.secs.iter().sum();
+        self.secs.len() >= ROUNDS[1] || (self.secs.len() >= ROUNDS[0] && total >= ENOUGH_SECS)
+    }
+}
+
+/// Records of the candidates in their order. Those that the cache holds are not measured again; each new one is kept as
+/// soon as all are timed. `progress` hears what comes next and may end it by an error.
+///
+/// Times are medians over frames that the candidates draw in turns, each after a pass of the rig's calibration; one frame
+/// before them warms up and does not count.
+pub fn measure(
+    shot: &Shot,
+    truth: &Truth,
+    candidates: &[Candidate],
+    rig: &mut Rig<'_>,
+    cache: &Cache,
+    progress: Progress<'_>,
+) -> Result<Vec<Record>, BenchError> {
+    let keys: Vec<String> =
+        candidates.iter().map(|c| cache.key(shot, truth, c, &rig.machine)).collect::<Result<_, _>>()?;
+    let mut records: Vec<Option<Record>> = keys.iter().map(|key| cache.record(key)).collect();
+    let mut entries = Vec::new();
+    for (index, candidate) in candidates.iter().enumerate().filter(|(index, _)| records[*index].is_none()) {
+        progress(&format!("{}: preparing {}", shot.name, candidate.label()))?;
+        let timer = rig.timers.iter_mut().find(|(id, _)| *id == candidate.method);
+        let (_, timer) = timer.ok_or(BenchError::NoTimer(candidate.method))?;
+        entries.push(open(timer.as_mut(), index, shot, &candidate.settings)?);
+    }
+    while !entries.iter().all(Entry::is_done) {
+        progress(&format!("{}: timing {} candidates in turns", shot.name, entries.len()))?;
+        for entry in entries.iter_mut().filter(|entry| !entry.is_done()) {
+            entry.calibration.push((rig.calibrate)()?);
+            entry.secs.push(entry.frames.frame()?);
+        }
+    }
+    for mut entry in entries {
+        let candidate = &candidates[entry.index];
+        progress(&format!("{}: comparing {}", shot.name, candidate.label()))?;
+        let picture = entry.frames.picture()?;
+        let masks = truth.masks.each_ref().map(Vec::as_slice);
+        let found = errors(&truth.picture, &picture, shot.exposure_ev, &masks)?;
+        let mut by_region = [None; Region::ALL.len()];
+        by_region.copy_from_slice(&found);
+        let preparation = entry.frames.preparation();
+        let record = Record {
+            scene: shot.name.clone(),
+            method: candidate.method.to_string(),
+            settings: candidate.texts(),
+            width: shot.size.x,
+            height: shot.size.y,
+            prepare_secs: preparation.secs,
+            bytes: preparation.bytes,
+            frame_secs: median(&mut entry.secs),
+            calibration_secs: median(&mut entry.calibration),
+            frames: entry.secs.len(),
+            errors: by_region,
+            floors: truth.floors,
+            truth_samples: truth.samples,
+        };
+        cache.keep(&keys[entry.index], &record)?;
+        records[entry.index] = Some(record);
+    }
+    Ok(records.into_iter().flatten().collect())
+}
+
+fn open(timer: &mut dyn FrameTimer, index: usize, shot: &Shot, settings: &Settings) -> Result<Entry, BenchError> {
+    let mut frames = timer.open(shot, settings)?;
+    frames.frame()?;
+    Ok(Entry { index, frames, secs: Vec::new(), calibration: Vec::new() })
+}
+
+/// The middle value, of an even number the upper one.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+impl Candidate {
+    /// The settings as text, all of them.
+    pub fn texts(&self) -> Vec<(String, String)> {
+        let text = |key: &'static str| (key.to_string(), self.settings.text(key).unwrap_or_default());
+        self.settings.iter().map(|(spec, _)| text(spec.key)).collect()
+    }
+
+    /// For people: the method and what is not default.
+    pub fn label(&self) -> String {
+        let changed = self.settings.iter().filter(|(spec, value)| spec.default() != *value);
+        let changed: Vec<String> = changed
+            .map(|(spec, _)| format!("{}={}", spec.key, self.settings.text(spec.key).unwrap_or_default()))
+            .collect();
+        [vec![self.method.to_string()], changed].concat().join(" ")
+    }
+}

@@ -1,0 +1,90 @@
+//! Times for the bench: the classical method on the device, and a pass that tells how fast that is just now.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use burnish_core::lighting::classical;
+use burnish_core::lighting::method::MethodId;
+use burnish_core::measure::bench::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
+use burnish_core::param::Settings;
+use burnish_core::picture::Picture;
+use burnish_core::scene::{Environment, gallery};
+use glam::{UVec2, Vec3};
+
+use crate::{Gpu, Passes, RenderError, Renderer, View};
+
+/// Pixels of the calibration pass.
+const CALIBRATION_SIZE: UVec2 = UVec2::new(320, 180);
+
+/// A timer for each method that is drawn on the device.
+pub fn timers(passes: &Arc<Passes>) -> Vec<(MethodId, Box<dyn FrameTimer>)> {
+    vec![(MethodId(classical::ID), Box::new(ClassicalTimer { passes: passes.clone(), warm: false }))]
+}
+
+/// Draws the default scene by lookups: a piece of work that stays the same while methods and scenes change. Returns its
+/// seconds.
+pub fn calibration(passes: &Arc<Passes>) -> Result<impl FnMut() -> Result<f64, BenchError> + use<>, BenchError> {
+    let mut scene = gallery::open("workbench").map_err(|e| BenchError::Method(e.to_string()))?;
+    // A small sky: only its lookups are of interest.
+    scene.environment = Some(Arc::new(Environment::new("grey", 8, 4, vec![Vec3::splat(0.5); 32])));
+    let mut settings = Settings::new(classical::PARAMS);
+    settings.set("samples", "0").map_err(|e| BenchError::Method(e.to_string()))?;
+    let camera = scene.cameras.first().cloned().ok_or_else(|| BenchError::Method("no camera".into()))?;
+    let view = View { size: CALIBRATION_SIZE, camera, settings, jitter_frames: 1 };
+    let mut renderer = Renderer::with_passes(passes, &Arc::new(scene)).map_err(words)?;
+    renderer.time_frame(&view).map_err(words)?;
+    Ok(move || renderer.time_frame(&view).map_err(words))
+}
+
+struct ClassicalTimer {
+    passes: Arc<Passes>,
+    /// The shaders are compiled.
+    warm: bool,
+}
+
+struct ClassicalFrames {
+    renderer: Renderer,
+    view: View,
+    preparation: Preparation,
+}
+
+impl FrameTimer for ClassicalTimer {
+    fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
+        let scene = shot.in_form(classical::form_choice(settings));
+        let view = View { size: shot.size, camera: shot.camera.clone(), settings: settings.clone(), jitter_frames: 1 };
+        if !std::mem::replace(&mut self.warm, true) {
+            Renderer::with_passes(&self.passes, &scene).and_then(|mut r| r.time_frame(&view)).map_err(words)?;
+        }
+        let before = allocated(&self.passes.gpu);
+        let start = Instant::now();
+        let renderer = Renderer::with_passes(&self.passes, &scene).map_err(words)?;
+        self.passes.gpu.wait().map_err(|e| BenchError::Method(e.to_string()))?;
+        let secs = start.elapsed().as_secs_f64();
+        let bytes = before.zip(allocated(&self.passes.gpu)).map(|(before, after)| after.saturating_sub(before));
+        Ok(Box::new(ClassicalFrames { renderer, view, preparation: Preparation { secs, bytes } }))
+    }
+}
+
+impl Frames for ClassicalFrames {
+    fn preparation(&self) -> Preparation {
+        self.preparation
+    }
+
+    fn frame(&mut self) -> Result<f64, BenchError> {
+        self.renderer.time_frame(&self.view).map_err(words)
+    }
+
+    fn picture(&mut self) -> Result<Picture, BenchError> {
+        let view = View { jitter_frames: COMPARED_FRAMES, ..self.view.clone() };
+        self.renderer.render(&view).map_err(words)
+    }
+}
+
+/// Bytes that the device has given out, where its allocator tells.
+fn allocated(gpu: &Gpu) -> Option<u64> {
+    gpu.device.generate_allocator_report().map(|report| report.total_allocated_bytes)
+}
+
+fn words(error: RenderError) -> BenchError {
+    BenchError::Method(error.to_string())
+}

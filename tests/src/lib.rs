@@ -18,6 +18,8 @@ pub enum Need {
     Data,
     /// A Python that can render with Mitsuba 3, see [`mitsuba_python`].
     Mitsuba,
+    /// A Python with the published FLIP, see [`flip_python`].
+    Flip,
 }
 
 impl Need {
@@ -27,6 +29,7 @@ impl Need {
             Need::Gpu => "gpu",
             Need::Data => "data",
             Need::Mitsuba => "mitsuba",
+            Need::Flip => "flip",
         }
     }
 
@@ -36,6 +39,7 @@ impl Need {
             Need::Gpu => (!has_adapter()).then_some("no adapter"),
             Need::Data => data_folder().is_none().then_some("no trial data"),
             Need::Mitsuba => mitsuba_python().is_none().then_some("no Python with mitsuba"),
+            Need::Flip => flip_python().is_none().then_some("no Python with flip-evaluator"),
         }
     }
 }
@@ -87,12 +91,19 @@ fn has_adapter() -> bool {
 /// A Python with the packages `mitsuba` and `numpy`: `BURNISH_PYTHON`, else `python3`.
 pub fn mitsuba_python() -> Option<&'static Path> {
     static FOUND: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let found = FOUND.get_or_init(|| {
-        let python = PathBuf::from(std::env::var_os("BURNISH_PYTHON").unwrap_or_else(|| "python3".into()));
-        let asked = Command::new(&python).args(["-c", "import mitsuba, numpy"]).output();
-        asked.is_ok_and(|output| output.status.success()).then_some(python)
-    });
-    found.as_deref()
+    FOUND.get_or_init(|| python_with("mitsuba, numpy")).as_deref()
+}
+
+/// A Python with the packages `flip-evaluator` and `numpy`, likewise.
+pub fn flip_python() -> Option<&'static Path> {
+    static FOUND: OnceLock<Option<PathBuf>> = OnceLock::new();
+    FOUND.get_or_init(|| python_with("flip_evaluator, numpy")).as_deref()
+}
+
+fn python_with(modules: &str) -> Option<PathBuf> {
+    let python = PathBuf::from(std::env::var_os("BURNISH_PYTHON").unwrap_or_else(|| "python3".into()));
+    let asked = Command::new(&python).args(["-c", &format!("import {modules}")]).output();
+    asked.is_ok_and(|output| output.status.success()).then_some(python)
 }
 
 /// Folder of the trial data (`models/`, `hdri/`): `BURNISH_DATA`, else `../shared/data` beside the repository.

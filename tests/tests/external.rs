@@ -1,9 +1,11 @@
 //! Foreign models, environments and optical constants: every one loads, or is refused for the reason that it should be.
-//! Foreign renderers: they agree with ours.
+//! Foreign renderers and measures: they agree with ours.
 //!
 //! The data are not part of the repository. They are looked for as `shared/data` beside it; without them the tests are
 //! ignored, and fail when `BURNISH_REQUIRE` names `data`.
 
+#[path = "external/metrics.rs"]
+mod metrics;
 #[path = "external/oracle/mod.rs"]
 mod oracle;
 #[path = "external/rays.rs"]
@@ -32,6 +34,7 @@ fn main() {
         Some(data) => trials(&data),
         None => vec![trial("models and environments", &[Need::Data], || ())],
     };
+    trials.push(metrics::trial_of_metrics());
     trials.extend(oracle::trials());
     // Decoding is parallel within each trial.
     arguments.test_threads.get_or_insert(1);

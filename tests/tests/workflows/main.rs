@@ -1,5 +1,6 @@
 //! The command line, in process: exit codes, one-line messages, JSON, pictures.
 
+mod chart;
 mod comparing;
 mod documents;
 mod exporting;
@@ -51,6 +52,12 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
         trial("a full disk is exit code 4", &[], a_full_disk),
+        trial(
+            "a chart is the same twice and kept in between",
+            &[Need::Gpu],
+            chart::a_chart_is_the_same_twice_and_kept_in_between,
+        ),
+        trial("what cannot be measured is told", &[], chart::what_cannot_be_measured_is_told),
         trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),
         trial(
             "a traced picture that goes on is the uninterrupted one",

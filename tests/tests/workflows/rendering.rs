@@ -116,7 +116,7 @@ pub fn readme_examples_run() {
     for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
         let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
         let is_file = |arg: &str| {
-            ["png", "exr", "glb", "hdr", "html", "csv", "json", "checkpoint"]
+            ["png", "exr", "glb", "hdr", "html", "csv", "svg", "json", "checkpoint"]
                 .iter()
                 .any(|end| arg.ends_with(&format!(".{end}")))
         };
@@ -137,6 +137,11 @@ pub fn readme_examples_run() {
         }
         if args[0] == "snapshot" {
             args.extend(["--size".into(), "320x200".into()]);
+        }
+        if args[0] == "chart" {
+            let cache: String = text(&folder.join("measured")).into();
+            args.extend(["--size", "32x18", "--samples", "4", "--cache"].map(String::from));
+            args.extend([cache, "--env".into(), text(&environment).into()]);
         }
         if args[0] == "render" {
             match args.iter().position(|arg| arg == "--size") {

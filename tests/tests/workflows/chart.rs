@@ -1,0 +1,59 @@
+//! `chart`: measurements, what is kept of them, and bad options.
+
+use std::fs;
+
+use burnish_tests::scratch_folder;
+
+use super::rendering::grey_environment;
+use super::{USAGE, burnish, text};
+
+pub fn a_chart_is_the_same_twice_and_kept_in_between() {
+    let folder = scratch_folder("chart");
+    let sky = grey_environment(&folder);
+    let [cache, svg, html] = ["cache", "chart.svg", "chart.html"].map(|name| folder.join(name));
+    let measure = |csv: &str, more: &[&str]| {
+        let csv = folder.join(csv);
+        let sweeps = ["--sweep", "classical.samples=0,2", "--sweep", "reference.samples=1"];
+        let files = ["--cache", text(&cache), "--out", text(&svg), "--csv", text(&csv), "--html", text(&html)];
+        let size = ["--size", "32x18", "--samples", "8", "--env", text(&sky)];
+        let args = [&["chart", "gallery:workbench"], &sweeps[..], &files[..], &size[..], more].concat();
+        burnish(&args).succeeded();
+        fs::read_to_string(&csv).expect("a table")
+    };
+    let first = measure("a.csv", &[]);
+    let rows: Vec<Vec<&str>> = first.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 4);
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    let column = |name: &str| rows[0].iter().position(|column| *column == name).unwrap_or_else(|| panic!("{name}"));
+    let number = |row: usize, name: &str| -> f64 { rows[row][column(name)].parse().unwrap_or(f64::NAN) };
+    for row in 1..4 {
+        assert!(number(row, "frame_ms") > 0.0 && number(row, "frame_ratio") > 0.0, "{first}");
+        assert!(number(row, "subject_relmse") > 0.0 && number(row, "frame_flip_floor") > 0.0, "{first}");
+    }
+    assert!(number(1, "memory_bytes") > 1e4 && rows[3][column("memory_bytes")].is_empty(), "{first}");
+    let drawn = fs::read_to_string(&svg).expect("a chart");
+    assert!(drawn.starts_with("<svg xmlns") && drawn.contains("samples 2"), "{drawn}");
+    assert!(fs::read_to_string(&html).expect("a page").contains("noise of the reference"));
+
+    // Read from the cache, times and all.
+    assert_eq!(measure("b.csv", &[]), first);
+    // Measured again: errors are the same bytes.
+    let fresh = measure("c.csv", &["--fresh"]);
+    let errors = |table: &str| -> Vec<Vec<String>> {
+        table.lines().map(|line| line.split(',').skip(column("under_floor")).map(String::from).collect()).collect()
+    };
+    assert_eq!(errors(&fresh), errors(&first));
+    assert_ne!(fresh, first, "times of another run are not the same to the last digit");
+}
+
+pub fn what_cannot_be_measured_is_told() {
+    let refused = |args: &[&str], words: &[&str]| {
+        burnish(&[&["chart"], args].concat()).failed(USAGE, words);
+    };
+    refused(&["--methods", "radiosity"], &["radiosity", "classical, reference"]);
+    refused(&["--sweep", "classical.samples=2000"], &["classical.samples=2000", "0 to 1024"]);
+    refused(&["--sweep", "samples"], &["[METHOD.]key=a,b,c"]);
+    refused(&["--sweep", "smples=1"], &["smples", "samples"]);
+    refused(&["--methods", "classical", "--sweep", "reference.bounces=1"], &["reference", "--methods"]);
+    refused(&["--subject", "teapot"], &["teapot", "there are"]);
+}

@@ -35,6 +35,11 @@ pub struct Opened {
 }
 
 impl SceneArg {
+    /// A SCENE that no command line names.
+    pub fn named(scene: &str) -> SceneArg {
+        SceneArg { scene: scene.into() }
+    }
+
     pub fn open(&self) -> Result<Opened, Failure> {
         if let Some(name) = gallery_name(&self.scene) {
             let scene = gallery::open(name).map_err(|e| Failure::input(Path::new(&self.scene), e))?;

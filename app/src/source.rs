@@ -35,6 +35,11 @@ pub struct Opened {
 }
 
 impl SceneArg {
+    /// A SCENE that no command line names.
+    pub fn named(scene: &str) -> SceneArg {
+        SceneArg { scene: scene.into() }
+    }
+
     pub fn open(&self) -> Result<Opened, Failure> {
         open(&self.scene)
     }

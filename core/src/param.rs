@@ -61,6 +61,15 @@ pub enum ParamKind {
         /// Value when not set.
         default: [f64; 3],
     },
+    /// A point or direction, each coordinate between those of `min` and `max`.
+    Vector {
+        /// Least coordinates.
+        min: [f64; 3],
+        /// Greatest coordinates.
+        max: [f64; 3],
+        /// Value when not set.
+        default: [f64; 3],
+    },
 }
 
 /// What must be done anew when a setting changes.
@@ -85,6 +94,8 @@ pub enum ParamValue {
     Toggle(bool),
     /// For [`ParamKind::Color`].
     Color([f64; 3]),
+    /// For [`ParamKind::Vector`].
+    Vector([f64; 3]),
 }
 
 /// Why a value was refused. Its text names the setting and what it takes.
@@ -118,6 +129,10 @@ impl fmt::Display for ParamKind {
             ParamKind::Choice { options, .. } => write!(f, "one of {}", options.join(", ")),
             ParamKind::Toggle { .. } => write!(f, "on or off"),
             ParamKind::Color { max, .. } => write!(f, "three numbers from 0 to {max}, with commas between"),
+            ParamKind::Vector { min, max, .. } => {
+                let [from, to] = [min, max].map(|v| v.map(|c| c.to_string()).join(","));
+                write!(f, "three numbers from {from} to {to}, with commas between")
+            }
         }
     }
 }
@@ -131,6 +146,7 @@ impl ParamSpec {
             ParamKind::Choice { default, .. } => ParamValue::Choice(default),
             ParamKind::Toggle { default } => ParamValue::Toggle(default),
             ParamKind::Color { default, .. } => ParamValue::Color(default),
+            ParamKind::Vector { default, .. } => ParamValue::Vector(default),
         }
     }
 
@@ -142,6 +158,9 @@ impl ParamSpec {
             (ParamKind::Choice { options, .. }, ParamValue::Choice(index)) => index < options.len(),
             (ParamKind::Toggle { .. }, ParamValue::Toggle(_)) => true,
             (ParamKind::Color { max, .. }, ParamValue::Color(c)) => c.iter().all(|v| (0.0..=max).contains(v)),
+            (ParamKind::Vector { min, max, .. }, ParamValue::Vector(v)) => {
+                (0..3).all(|axis| (min[axis]..=max[axis]).contains(&v[axis]))
+            }
             _ => false,
         }
     }
@@ -156,7 +175,7 @@ impl ParamSpec {
             (_, ParamValue::Number(v)) => v.into(),
             (_, ParamValue::Choice(index)) => index.into(),
             (_, ParamValue::Toggle(on)) => on.into(),
-            (_, ParamValue::Color(c)) => c.to_vec().into(),
+            (_, ParamValue::Color(c) | ParamValue::Vector(c)) => c.to_vec().into(),
         }
     }
 
@@ -170,8 +189,10 @@ impl ParamSpec {
             }
             (ParamKind::Toggle { .. }, Value::Bool(on)) => Some(ParamValue::Toggle(*on)),
             (ParamKind::Color { .. }, Value::Array(parts)) => {
-                let numbers: Option<Vec<f64>> = parts.iter().map(Value::as_f64).collect();
-                numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(ParamValue::Color)
+                three(parts.iter().map(Value::as_f64)).map(ParamValue::Color)
+            }
+            (ParamKind::Vector { .. }, Value::Array(parts)) => {
+                three(parts.iter().map(Value::as_f64)).map(ParamValue::Vector)
             }
             _ => None,
         };
@@ -195,13 +216,21 @@ impl ParamSpec {
                 "off" | "false" => Some(ParamValue::Toggle(false)),
                 _ => None,
             },
-            ParamKind::Color { .. } => {
-                let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-                numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(ParamValue::Color)
-            }
+            ParamKind::Color { .. } => numbers(text).map(ParamValue::Color),
+            ParamKind::Vector { .. } => numbers(text).map(ParamValue::Vector),
         };
         value.filter(|value| self.accepts(*value)).ok_or_else(|| self.refusal(text))
     }
+}
+
+/// Three numbers with commas between.
+fn numbers(text: &str) -> Option<[f64; 3]> {
+    three(text.split(',').map(|part| part.trim().parse().ok()))
+}
+
+/// Exactly three numbers.
+fn three(parts: impl Iterator<Item = Option<f64>>) -> Option<[f64; 3]> {
+    parts.collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// Finds a setting by its key.
@@ -250,7 +279,7 @@ impl Settings {
             (_, ParamValue::Number(v)) => v.to_string(),
             (_, ParamValue::Choice(index)) => index.to_string(),
             (_, ParamValue::Toggle(on)) => if on { "on" } else { "off" }.into(),
-            (_, ParamValue::Color([r, g, b])) => format!("{r},{g},{b}"),
+            (_, ParamValue::Color([x, y, z]) | ParamValue::Vector([x, y, z])) => format!("{x},{y},{z}"),
         })
     }
 
@@ -297,6 +326,11 @@ mod tests {
             (ParamKind::Choice { options: &["a", "b"], default: 0 }, ParamValue::Choice(1), "b"),
             (ParamKind::Toggle { default: false }, ParamValue::Toggle(true), "on"),
             (ParamKind::Color { max: 1.0, default: [0.0; 3] }, ParamValue::Color([0.1, 0.2, 1.0]), "0.1,0.2,1"),
+            (
+                ParamKind::Vector { min: [-1.0; 3], max: [0.0, 1.0, 2.0], default: [0.0; 3] },
+                ParamValue::Vector([-0.5, 0.25, 1.5]),
+                "-0.5, 0.25, 1.5",
+            ),
         ];
         for (kind, value, text) in kinds {
             let spec = ParamSpec { kind, ..SPECS[0] };
@@ -312,5 +346,10 @@ mod tests {
         assert!(spec.from_json(&serde_json::json!([0.0, 2.0, 0.0])).is_err());
         assert!(spec.from_json(&serde_json::json!([0.0, 1.0])).is_err());
         assert!(!spec.accepts(ParamValue::Color([f64::NAN, 0.0, 0.0])));
+        let kind = ParamKind::Vector { min: [-1.0; 3], max: [0.0, 1.0, 2.0], default: [0.0; 3] };
+        let spec = ParamSpec { kind, ..SPECS[0] };
+        assert!(spec.parse("0.5,0,0").unwrap_err().to_string().contains("from -1,-1,-1 to 0,1,2"));
+        assert!(spec.parse("0,0").is_err() && spec.parse("0,0,0,0").is_err() && spec.parse("0,NaN,0").is_err());
+        assert!(!spec.accepts(ParamValue::Color([0.0; 3])), "a colour is no vector");
     }
 }

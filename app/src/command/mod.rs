@@ -8,6 +8,7 @@ mod fit;
 mod fresnel_balls;
 mod fresnel_report;
 mod fresnel_times;
+mod gallery;
 mod info;
 mod measure;
 pub mod open;
@@ -30,6 +31,8 @@ pub enum Command {
     Render(render::Args),
     /// Write a scene for another renderer, with a report of what that cannot hold
     Export(export::Args),
+    /// List, render or write the built-in scenes
+    Gallery(gallery::Args),
     /// List what a scene consists of
     Info(info::Args),
     /// List the metal presets, or the errors of their Fresnel forms
@@ -59,6 +62,7 @@ impl Command {
         match self {
             Command::Render(args) => render::run(args, out, err),
             Command::Export(args) => export::run(args, out, err),
+            Command::Gallery(args) => gallery::run(args, out, err),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
             Command::Fit(args) => fit::run(args, out),

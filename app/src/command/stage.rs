@@ -68,6 +68,22 @@ pub struct Staged {
 }
 
 impl StageArgs {
+    /// A scene as it is, as a picture of a size.
+    pub fn plain(scene: &str, size: UVec2) -> StageArgs {
+        let scene = SceneArg::named(scene);
+        StageArgs {
+            scene,
+            env: None,
+            metal: Vec::new(),
+            finish: Vec::new(),
+            coat: Vec::new(),
+            roughness: None,
+            anisotropy: None,
+            size,
+            camera: None,
+        }
+    }
+
     /// Opens SCENE; a document must have all of its files.
     pub fn open(&self) -> Result<Opened, Failure> {
         self.scene.open()?.complete()
@@ -79,6 +95,9 @@ impl StageArgs {
         if let (Some(document), Forms::OfAll) = (&document, forms) {
             let all = document.in_form(&Arc::new(scene), choice, &mut Curves::default());
             scene = Arc::unwrap_or_clone(all);
+        }
+        if document.is_none() {
+            set_form(&mut scene, choice);
         }
         if let Some(file) = &self.env {
             let (environment, more) = source::environment(file)?;
@@ -150,6 +169,17 @@ impl StageArgs {
                 (None, Some(camera)) if from_gallery => camera.clone(),
                 _ => Camera::frame(scene.bounds(), self.size.x as f32 / self.size.y as f32),
             }),
+        }
+    }
+}
+
+/// Gives the metals that a gallery scene brings the form that is asked for.
+fn set_form(scene: &mut Scene, choice: FormChoice) {
+    for material in &mut scene.materials {
+        if let Reflectance::Preset { id, fresnel } = &mut material.reflectance
+            && let Ok(preset) = preset::find(id)
+        {
+            *fresnel = Arc::new(preset.fresnel(choice.form(&preset)));
         }
     }
 }

@@ -139,6 +139,9 @@ fn control_ui(
             if response.inner.changed() { ParamEdit::at_once(ParamValue::Toggle(on)) } else { ParamEdit::default() }
         }
         (ParamKind::Color { .. }, ParamValue::Color(color)) => color_ui(ui, spec, color, width, name, hover),
+        (ParamKind::Vector { min, max, .. }, ParamValue::Vector(vector)) => {
+            vector_ui(ui, spec, [min, max], vector, width, hover)
+        }
         // A value of another kind cannot be shown; the row says so instead of guessing.
         _ => {
             ui.weak("-");
@@ -302,6 +305,37 @@ fn channels_ui(ui: &mut egui::Ui, spec: &ParamSpec, color: [f64; 3], hover: &str
     });
 }
 
+/// The coordinates of a vector side by side.
+fn vector_ui(
+    ui: &mut egui::Ui,
+    spec: &ParamSpec,
+    [min, max]: [[f64; 3]; 2],
+    vector: [f64; 3],
+    width: f32,
+    hover: &str,
+) -> ParamEdit {
+    let mut edit = ParamEdit::default();
+    let (mut new, mut changed) = (vector, false);
+    let size = vec2((width - 2.0 * ui.spacing().item_spacing.x) / 3.0, ui.spacing().interact_size.y);
+    ui.horizontal(|ui| {
+        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            let field = DragValue::new(&mut new[axis])
+                .range(min[axis]..=max[axis])
+                .clamp_existing_to_range(false)
+                .speed(0.004 * (max[axis] - min[axis]))
+                .max_decimals(3);
+            let field = ui.add_sized(size, field).on_hover_text(format!("{letter}. {hover}"));
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(format!("{} {letter}", spec.label)));
+            edit.ended |= field.drag_stopped() || field.lost_focus();
+            changed |= field.changed();
+        }
+    });
+    if changed {
+        edit.change = Some(Change::Set(ParamValue::Vector(new)));
+    }
+    edit
+}
+
 /// Gives a text field a name that can be read out.
 pub fn name_input(response: &Response, name: &str, text: &str) {
     response.widget_info(|| {
@@ -320,6 +354,7 @@ fn hover_text(spec: &ParamSpec, base: ParamValue) -> String {
         (_, ParamValue::Integer(v)) => format!("{v}"),
         (_, ParamValue::Toggle(on)) => if on { "on" } else { "off" }.into(),
         (_, ParamValue::Color([r, g, b])) => format!("{r:.3}, {g:.3}, {b:.3} ({})", hex([r, g, b])),
+        (_, ParamValue::Vector([x, y, z])) => format!("{x}, {y}, {z}"),
         (_, ParamValue::Choice(i)) => i.to_string(),
     };
     format!("{}\nTakes {}{unit}. Unchanged: {base}.", spec.help, spec.kind)

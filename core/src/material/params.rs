@@ -194,7 +194,8 @@ pub fn apply(material: &mut Material, values: &Values) {
                 _ => {}
             },
             ParamValue::Choice(index) => set_choice(material, key, index),
-            ParamValue::Integer(_) => {}
+            // No setting of a material is one.
+            ParamValue::Integer(_) | ParamValue::Vector(_) => {}
         }
     }
     material.emission = emission;
@@ -264,6 +265,7 @@ mod tests {
                 ParamKind::Choice { .. } => ParamValue::Choice(1),
                 ParamKind::Toggle { default } => ParamValue::Toggle(!default),
                 ParamKind::Color { .. } => ParamValue::Color([0.25, 1.0, 0.5]),
+                ParamKind::Vector { max, .. } => ParamValue::Vector(max),
             };
             let mut values = Values::from([(spec.key, other)]);
             // What only shows together with its partner.

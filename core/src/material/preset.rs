@@ -12,7 +12,7 @@ pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION, reaches_required};
 pub(super) use check::{ID_REMEDY, is_id};
 pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
 pub(super) use library::hint;
-pub use library::{find, library};
+pub use library::{IDS, find, library};
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};

@@ -17,7 +17,7 @@ use crate::failure::{Exit, Failure, printable};
 const FRAMES: u32 = 16;
 
 /// What only this method takes.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub struct ClassicalArgs {
     /// Jittered frames that are averaged, 1 to 4096 [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]

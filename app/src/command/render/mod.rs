@@ -12,6 +12,7 @@ use burnish_core::document::ViewEntry;
 use burnish_core::file::PictureFormat;
 use burnish_core::lighting;
 use burnish_core::param::{ParamSpec, Settings};
+use glam::UVec2;
 
 use classical::ClassicalArgs;
 use reference::ReferenceArgs;
@@ -75,6 +76,20 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         Method::Classical => classical::run(&classical, &stage, &set, &output, out, err),
         Method::Reference => reference::run(&reference, &stage, &set, &output, out, err),
     }
+}
+
+/// The reference's picture of a scene as it is; `file` decides the format.
+pub fn reference_picture(
+    scene: &str,
+    size: UVec2,
+    samples: u32,
+    file: PathBuf,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let output = Output { out: file, tone: None, exposure: None };
+    output.check()?;
+    reference::run(&ReferenceArgs::of_samples(samples), &StageArgs::plain(scene, size), &[], &output, out, err)
 }
 
 impl Output {

@@ -25,7 +25,7 @@ use crate::value;
 const SAMPLES: u32 = 64;
 
 /// What only this method takes.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub struct ReferenceArgs {
     /// Samples of every pixel, 1 to 16777216 [default: 64 when neither --time nor --error is given]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
@@ -51,6 +51,11 @@ pub struct ReferenceArgs {
 }
 
 impl ReferenceArgs {
+    /// So many samples of every pixel, all else as it is without options.
+    pub fn of_samples(samples: u32) -> ReferenceArgs {
+        ReferenceArgs { samples: Some(samples), ..ReferenceArgs::default() }
+    }
+
     /// An option that was given.
     pub fn given(&self) -> Option<&'static str> {
         let ReferenceArgs { samples, time, error, seed, bounces, checkpoint, threads } = self;

@@ -66,6 +66,18 @@ pub(super) const FILES: [(&str, &str); 57] = [
     ("Zr.Palm.json", include_str!("../../../../presets/metals/Zr.Palm.json")),
 ];
 
+/// Ids of the presets, in the order of their files.
+pub const IDS: [&str; FILES.len()] = {
+    let mut ids = [""; FILES.len()];
+    let mut i = 0;
+    while i < FILES.len() {
+        let file = FILES[i].0;
+        ids[i] = file.split_at(file.len() - ".json".len()).0;
+        i += 1;
+    }
+    ids
+};
+
 /// Parsed once. A file that does not parse would be left out; a test shows that each does.
 static LIBRARY: LazyLock<Vec<Preset>> = LazyLock::new(|| {
     let mut presets: Vec<Preset> = FILES.iter().filter_map(|(_, text)| serde_json::from_str(text).ok()).collect();

@@ -4,10 +4,23 @@
 //! declared settings, so that help and messages show the same list. [`studio`] is the environment that lights a
 //! scene that brings none.
 
+mod ball;
+mod bowls;
+mod box_sphere;
+mod cabin;
+mod corner;
+mod crate_box;
+mod parts;
+mod pattern;
+mod ring;
+mod room;
 pub mod shape;
+mod statue;
 mod studio;
+mod teapot;
 #[cfg(test)]
 mod tests;
+mod wall;
 mod workbench;
 
 use super::Scene;
@@ -67,7 +80,22 @@ pub enum GalleryError {
 
 /// All scenes, the default first.
 pub fn list() -> &'static [GalleryScene] {
-    &[workbench::SCENE]
+    const LIST: &[GalleryScene] = &[
+        workbench::SCENE,
+        ball::SCENE,
+        ring::SCENE,
+        room::SCENE,
+        crate_box::SCENE,
+        box_sphere::SCENE,
+        statue::STATUE,
+        statue::FIREBALLS,
+        corner::SCENE,
+        teapot::SCENE,
+        bowls::SCENE,
+        cabin::SCENE,
+        wall::SCENE,
+    ];
+    LIST
 }
 
 /// Makes the scene that `spec` names: `NAME[?key=value&...]`, with or without `gallery:` before it.

@@ -9,20 +9,28 @@
 
 mod block;
 mod builder;
+mod deform;
+mod pierced;
 mod profile;
 mod revolve;
+mod star;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod vessel;
 
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::scene::Mesh;
 
 pub use block::block;
+pub use deform::{Curve, bent, deformed, twisted};
+pub use pierced::pierced;
 pub use profile::{Corner, Profile};
 pub use revolve::revolve;
+pub use star::{Bump, blob, bunny_like, star};
 pub use sweep::sweep;
+pub use vessel::{bowl, figure, goblet, rod, teapot};
 
 use builder::{Builder, Vertex};
 

@@ -7,12 +7,14 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
-use super::{add, add_material};
 use crate::{
     material::Material,
     scene::{
         Mesh, Scene,
-        gallery::shape::{self, Corner, Profile},
+        gallery::{
+            parts::{add, add_material, add_subject},
+            shape::{self, Corner, Profile},
+        },
     },
 };
 
@@ -43,10 +45,10 @@ pub fn add_parts(scene: &mut Scene, roughness: f32, anisotropy: f32) {
     let upright = Affine3A::from_translation(Vec3::new(0.0, MIDDLE, 0.0));
     // Tilted, so that the camera looks on the facet and the highlights of the sides are not upright.
     let tilted = upright * Affine3A::from_quat(Quat::from_rotation_z(-0.16) * Quat::from_rotation_x(0.2));
-    add(scene, "ball", shape::combined("ball", [upper_shell(), lower_shell()]), gold, tilted);
-    add(scene, "foot", foot(), gold, upright);
-    add(scene, "core", core(), enamel, tilted);
-    add(scene, "ring", shape::torus(0.186, 0.015, AROUND, 24), steel, tilted);
+    add_subject(scene, "ball", shape::combined("ball", [upper_shell(), lower_shell()]), gold, tilted);
+    add_subject(scene, "foot", foot(), gold, upright);
+    add_subject(scene, "core", core(), enamel, tilted);
+    add_subject(scene, "ring", shape::torus(0.186, 0.015, AROUND, 24), steel, tilted);
     let plinth = shape::block(Vec3::new(0.46, PLINTH_TOP, 0.46), 0.012, 5);
     add(scene, "plinth", plinth, stone, Affine3A::from_translation(Vec3::new(0.0, 0.5 * PLINTH_TOP, 0.0)));
 }

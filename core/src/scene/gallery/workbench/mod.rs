@@ -7,13 +7,12 @@
 mod ball;
 mod room;
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
 use super::{GalleryScene, number};
 use crate::{
-    material::Material,
     param::{Affects, ParamKind, ParamSpec, Settings},
-    scene::{Camera, Instance, Light, LightKind, Mesh, Scene},
+    scene::{Camera, Light, LightKind, Scene},
 };
 
 /// Entry in the list of scenes.
@@ -86,22 +85,4 @@ fn spot() -> Light {
         range: f32::INFINITY,
         kind: LightKind::Spot { inner_angle: 0.3, outer_angle: 0.5 },
     }
-}
-
-/// Adds a material and gives its index.
-fn add_material(scene: &mut Scene, material: Material) -> usize {
-    scene.materials.push(material);
-    scene.materials.len() - 1
-}
-
-/// Places a mesh.
-fn add(scene: &mut Scene, name: &str, mesh: Mesh, material: usize, world_from_local: Affine3A) {
-    scene.instances.push(Instance {
-        name: name.into(),
-        mesh: scene.meshes.len(),
-        material,
-        world_from_local,
-        visible: true,
-    });
-    scene.meshes.push(Mesh { name: name.into(), ..mesh }.into());
 }

@@ -4,10 +4,15 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::{add, add_material};
 use crate::{
     material::{Material, Sampler, TextureRef, Wrap},
-    scene::{Image, Mesh, Scene, Texels, gallery::shape},
+    scene::{
+        Image, Mesh, Scene, Texels,
+        gallery::{
+            parts::{add, add_material},
+            shape,
+        },
+    },
 };
 
 /// Inside of the room: x is half its width, y its height, z half its depth; metres.

@@ -1,0 +1,62 @@
+//! The corner of a closed room that no lamp reaches: all light has bounced at least once.
+//!
+//! A lamp behind a screen lights a wall and the ceiling; these light the corner. Light sources that are put on the
+//! walls instead have their spikes and their darkening where the walls meet and where things touch.
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use super::{
+    GalleryScene,
+    parts::{
+        Room, add, add_material, add_panel, add_subject, ambient, in_metres, material_param, paint, roughness_param,
+        subject_material,
+    },
+    pattern, shape,
+};
+use crate::{
+    material::Material,
+    param::{ParamSpec, Settings},
+    scene::{Camera, Scene},
+};
+
+/// Entry in the list of scenes.
+pub const SCENE: GalleryScene = GalleryScene {
+    name: "corner",
+    title: "The corner of a closed room that only bounced light reaches",
+    params: PARAMS,
+    build,
+};
+
+const PARAMS: &[ParamSpec] = &[material_param("Al"), roughness_param(0.35)];
+
+/// The hollow reaches from the floor, y = 0, to 2.2 m.
+const ROOM: Room = Room { middle: Vec3::new(0.0, 1.1, 0.0), half: Vec3::new(1.5, 1.1, 1.3), thickness: 0.15 };
+
+fn build(settings: &Settings) -> Scene {
+    let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
+    let material = add_material(&mut scene, subject_material(settings));
+    let at = Affine3A::from_translation;
+    add_subject(&mut scene, "ball", shape::sphere(0.3, 112), material, at(Vec3::new(0.55, 0.3, -0.62)));
+    let turned = at(Vec3::new(1.06, 0.3001, -0.42)) * Affine3A::from_rotation_y(0.5);
+    add_subject(&mut scene, "block", shape::block(Vec3::new(0.36, 0.6, 0.36), 0.015, 4), material, turned);
+    let clay = add_material(&mut scene, paint("bowl", Vec3::new(0.55, 0.26, 0.14)));
+    add(&mut scene, "bowl", shape::bowl(0.2, 72), clay, at(Vec3::new(0.62, 1e-4, -0.02)));
+
+    let orange = add_material(&mut scene, paint("wall-left", Vec3::new(0.78, 0.45, 0.2)));
+    let blue = add_material(&mut scene, paint("wall-right", Vec3::new(0.3, 0.44, 0.62)));
+    let white = add_material(&mut scene, paint("white", Vec3::splat(0.76)));
+    let squares = pattern::checker(2, [Vec3::splat(0.55), Vec3::splat(0.3)]);
+    let squares = in_metres(&mut scene, squares, Vec2::splat(0.6), ROOM.overlap(Vec3::Y));
+    let floor = Material { base_color_texture: Some(squares), roughness: 0.5, ..paint("floor", Vec3::ONE) };
+    let floor = add_material(&mut scene, floor);
+    ROOM.add(&mut scene, [orange, blue, floor, white, white, white]);
+    // From the wall at the back into the room, open above and in front; sunk into floor and wall.
+    let screen = Vec3::new(0.06, 1.63, 1.93);
+    let middle = Vec3::new(-0.55, 0.5 * screen.y - 0.03, -1.33 + 0.5 * screen.z);
+    add(&mut scene, "screen", shape::block(screen, 0.0, 1), white, at(middle));
+    let size = Vec2::new(1.1, 1.0);
+    add_panel(&mut scene, "lamp", Vec3::new(-0.62, 0.95, -0.3), Vec3::NEG_X, size, Vec3::new(26.0, 24.0, 21.0));
+    scene.environment = ambient(Vec3::splat(0.2), Vec3::splat(0.35));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.3, 1.06, 1.16), Vec3::new(0.72, 0.44, -0.62), 0.8));
+    scene
+}

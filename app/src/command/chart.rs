@@ -244,7 +244,7 @@ fn write(args: &Args, records: &[Record], out: &mut dyn Write) -> Result<(), Fai
         let Some((errors, floor)) = record.of(record.region()) else { continue };
         writeln!(
             out,
-            "{:24} {:10} {:>10.2} ms {:>8.2} x  relMSE {:.3e}{} FLIP {:.4} bias {:+.2} %  {}",
+            "{:24} {:10} {:>10.2} ms {:>8.2} x  relMSE {:.3e}{} FLIP {:.4} bias {:+.2} % difference {:.2} %  {}",
             printable(&record.scene),
             record.method,
             1e3 * record.frame_secs,
@@ -253,6 +253,7 @@ fn write(args: &Args, records: &[Record], out: &mut dyn Write) -> Result<(), Fai
             if errors.relmse <= floor.relmse { " (noise)" } else { "" },
             errors.flip,
             100.0 * errors.bias,
+            100.0 * errors.difference,
             record.settings_text()
         )?;
     }

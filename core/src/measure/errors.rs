@@ -21,6 +21,8 @@ pub struct Errors {
     pub flip_p99: f64,
     /// Difference of mean luminance relative to the reference's; 0 where that is black.
     pub bias: f64,
+    /// Mean of |x − r| over mean of r, all channels; 0 where the reference is black.
+    pub difference: f64,
     /// Relative MSE of the worst 1 % of the pixels, at least one.
     pub worst: f64,
 }
@@ -61,11 +63,15 @@ fn over(reference: &Picture, picture: &Picture, seen: &[f32], mask: &Mask) -> Op
     flips.sort_by(f64::total_cmp);
     let total = |of: &Picture| chosen.iter().map(|i| f64::from(luminance(color(of, *i)))).sum::<f64>();
     let (wanted, found) = (total(reference), total(picture));
+    let apart: f64 =
+        chosen.iter().map(|i| f64::from((color(picture, *i) - color(reference, *i)).abs().element_sum())).sum();
+    let light: f64 = chosen.iter().map(|i| f64::from(color(reference, *i).element_sum())).sum();
     Some(Errors {
         relmse,
         flip,
         flip_p99: flips[((0.99 * count as f64).ceil() as usize).clamp(1, count) - 1],
         bias: if wanted > 0.0 { (found - wanted) / wanted } else { 0.0 },
+        difference: if light > 0.0 { apart / light } else { 0.0 },
         worst: mean(&squares[count - worst.clamp(1, count)..]),
     })
 }
@@ -81,13 +87,14 @@ impl Errors {
     /// that the reference is the mean of.
     ///
     /// The halves differ by twice the deviation of their mean: measures that grow with the difference are halved (FLIP,
-    /// bias), those that grow with its square are quartered.
+    /// bias, the difference itself), those that grow with its square are quartered.
     pub fn floor_of_halves(self) -> Errors {
         Errors {
             relmse: self.relmse / 4.0,
             flip: self.flip / 2.0,
             flip_p99: self.flip_p99 / 2.0,
             bias: self.bias.abs() / 2.0,
+            difference: self.difference / 2.0,
             worst: self.worst / 4.0,
         }
     }
@@ -139,7 +146,7 @@ mod tests {
         let one = 0.25 / 0.26;
         let here = found[0].unwrap();
         assert!((here.relmse - one / 100.0).abs() < 1e-8 && (here.worst - one).abs() < 1e-6, "{here:?}");
-        assert!((here.bias - 0.01).abs() < 1e-6);
+        assert!((here.bias - 0.01).abs() < 1e-6 && (here.difference - 0.01).abs() < 1e-6, "{here:?}");
         let there = found[1].unwrap();
         assert_eq!((there.relmse, there.bias, there.worst), (0.0, 0.0, 0.0));
         assert_eq!(found[2], None);
@@ -164,6 +171,7 @@ mod tests {
         let (floor, real) = (of(&a, &b).floor_of_halves(), of(&truth, &mean));
         assert!((floor.relmse / real.relmse - 1.0).abs() < 0.05, "{floor:?} {real:?}");
         assert!((floor.worst / real.worst - 1.0).abs() < 0.2, "{floor:?} {real:?}");
+        assert!((floor.difference / real.difference - 1.0).abs() < 0.05, "{floor:?} {real:?}");
     }
 
     #[test]

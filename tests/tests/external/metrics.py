@@ -32,6 +32,7 @@ def answer(request):
         "flip": flip.mean(),
         "flip_p99": numpy.sort(flip)[int(numpy.ceil(0.99 * flip.size)) - 1],
         "bias": (found - wanted) / wanted,
+        "difference": numpy.abs(x - r).sum() / r.sum(),
         "worst": numpy.sort(squares)[-worst:].mean(),
     }
 

@@ -83,11 +83,13 @@ fn section(scene: &[&Record]) -> String {
     html += &table("", "What it costs", &head(titles), &rows);
     for region in Region::ALL {
         let Some((_, floor)) = first.of(region) else { continue };
-        let titles = ["method and settings", "relMSE", "FLIP", "FLIP, 99 %", "bias, %", "worst 1 %"];
-        let measures = |e: &burnish_core::measure::Errors| [e.relmse, e.flip, e.flip_p99, 100.0 * e.bias, e.worst];
+        let titles = ["method and settings", "relMSE", "FLIP", "FLIP, 99 %", "bias, %", "difference, %", "worst 1 %"];
+        let measures = |e: &burnish_core::measure::Errors| {
+            [e.relmse, e.flip, e.flip_p99, 100.0 * e.bias, 100.0 * e.difference, e.worst]
+        };
         let floors = measures(&floor);
         let line = |r: &&Record| {
-            let found = r.of(region).map_or([f64::NAN; 5], |(errors, _)| measures(&errors));
+            let found = r.of(region).map_or([f64::NAN; 6], |(errors, _)| measures(&errors));
             let cells = found.iter().zip(floors).map(|(value, floor)| {
                 let under = value.abs() <= floor;
                 let mark =
@@ -150,8 +152,8 @@ pub(super) mod tests {
     use super::*;
 
     pub fn record(scene: &str, method: &str, samples: u32, ms: f64, relmse: f64) -> Record {
-        let errors = Errors { relmse, flip: 0.1, flip_p99: 0.3, bias: -0.02, worst: 3.0 * relmse };
-        let floor = Errors { relmse: 1e-4, flip: 1e-3, flip_p99: 2e-3, bias: 1e-4, worst: 1e-3 };
+        let errors = Errors { relmse, flip: 0.1, flip_p99: 0.3, bias: -0.02, difference: 0.05, worst: 3.0 * relmse };
+        let floor = Errors { relmse: 1e-4, flip: 1e-3, flip_p99: 2e-3, bias: 1e-4, difference: 1e-3, worst: 1e-3 };
         Record {
             scene: scene.into(),
             method: method.into(),

@@ -62,11 +62,12 @@ pub struct Record {
 
 /// Measures of [`Errors`] with their names in tables.
 type Measure = (&'static str, fn(&Errors) -> f64);
-const MEASURES: [Measure; 5] = [
+const MEASURES: [Measure; 6] = [
     ("relmse", |e| e.relmse),
     ("flip", |e| e.flip),
     ("flip_p99", |e| e.flip_p99),
     ("bias", |e| e.bias),
+    ("difference", |e| e.difference),
     ("worst", |e| e.worst),
 ];
 

@@ -56,6 +56,6 @@ fn build(settings: &Settings) -> Scene {
     let table = add_material(&mut scene, table);
     let top = shape::block(Vec3::new(3.0, 0.04, 3.0), 0.0, 1);
     add(&mut scene, "table", top, table, Affine3A::from_translation(Vec3::new(0.0, -0.02, 0.0)));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.03, 0.37, 0.72), Vec3::new(0.015, 0.064, 0.02), 0.41));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.03, 0.38, 0.74), Vec3::new(0.012, 0.076, 0.02), 0.42));
     scene
 }

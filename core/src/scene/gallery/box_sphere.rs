@@ -24,7 +24,7 @@ pub const SCENE: GalleryScene = GalleryScene {
     build,
 };
 
-const PARAMS: &[ParamSpec] = &[BODY, material_param("Ag"), roughness_param(0.0), room::at_param([0.26, -0.2, -0.34])];
+const PARAMS: &[ParamSpec] = &[BODY, material_param("Ag"), roughness_param(0.0), room::at_param([0.3, -0.2, -0.3])];
 
 fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
@@ -32,7 +32,7 @@ fn build(settings: &Settings) -> Scene {
     room::add_body(&mut scene, settings, material, RADIUS, vector(settings, "at"));
     room::add_numbered(&mut scene);
     let chalk = add_material(&mut scene, paint("ball", Vec3::new(0.72, 0.7, 0.66)));
-    let (middle, radius) = (Vec3::new(-0.26, -0.36, 0.12), 0.17);
+    let (middle, radius) = (Vec3::new(-0.36, -0.3, -0.16), 0.17);
     add(&mut scene, "free ball", shape::sphere(radius, 80), chalk, Affine3A::from_translation(middle));
     // A rod from inside of the ball into the floor.
     let height = middle.y - 0.5 * radius + 1.02;
@@ -41,6 +41,6 @@ fn build(settings: &Settings) -> Scene {
     let standing = Vec3::new(middle.x, -1.02 + 0.5 * height, middle.z);
     add(&mut scene, "rod", rod, steel, Affine3A::from_translation(standing));
     room::add_lamp(&mut scene);
-    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.78, 0.18, 0.9), Vec3::new(0.08, -0.24, -0.2), 0.95));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.56, 0.14, 0.92), Vec3::new(0.06, -0.24, -0.25), 0.84));
     scene
 }

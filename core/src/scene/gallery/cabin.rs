@@ -37,14 +37,14 @@ fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
     let material = add_material(&mut scene, subject_material(settings));
     let at = Affine3A::from_translation;
-    let turned = at(Vec3::new(0.02, 0.6201, -0.3)) * Affine3A::from_rotation_y(-0.5);
+    let turned = at(Vec3::new(-0.62, 0.6201, -0.32)) * Affine3A::from_rotation_y(0.3);
     add_subject(&mut scene, "kettle", shape::teapot(0.2, 112), material, turned);
-    add_subject(&mut scene, "bowl", shape::bowl(0.17, 80), material, at(Vec3::new(0.45, 0.6201, -0.02)));
+    add_subject(&mut scene, "bowl", shape::bowl(0.17, 80), material, at(Vec3::new(-0.2, 0.6201, -0.26)));
     furniture(&mut scene);
     walls(&mut scene);
     window(&mut scene);
     scene.environment = ambient(Vec3::new(0.12, 0.08, 0.05), Vec3::new(0.16, 0.11, 0.07));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(1.02, 1.2, 1.26), Vec3::new(-0.06, 0.82, -0.3), 0.86));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.34, 1.2, 1.0), Vec3::new(-0.62, 0.9, -0.28), 0.8));
     scene
 }
 
@@ -55,8 +55,8 @@ fn furniture(scene: &mut Scene) {
     let oak = Material { base_color_texture: Some(oak), roughness: 0.4, ..paint("table", Vec3::ONE) };
     let oak = add_material(scene, oak);
     let at = Affine3A::from_translation;
-    add(scene, "table", shape::block(Vec3::new(1.5, 0.05, 0.8), 0.008, 2), oak, at(Vec3::new(0.2, 0.595, -0.2)));
-    for (name, x) in [("leg-left", -0.35), ("leg-right", 0.75)] {
+    add(scene, "table", shape::block(Vec3::new(1.5, 0.05, 0.8), 0.008, 2), oak, at(Vec3::new(-0.4, 0.595, -0.2)));
+    for (name, x) in [("leg-left", -0.95), ("leg-right", 0.15)] {
         // From inside of the board into the floor.
         add(scene, name, shape::block(Vec3::new(0.09, 0.63, 0.6), 0.008, 2), oak, at(Vec3::new(x, 0.275, -0.2)));
     }
@@ -68,7 +68,7 @@ fn walls(scene: &mut Scene) {
         let image = in_metres(scene, image, Vec2::splat(0.8), ROOM.overlap(outward));
         add_material(scene, Material { base_color_texture: Some(image), ..paint(name, Vec3::ONE) })
     };
-    let pine = Vec3::new(0.62, 0.4, 0.21);
+    let pine = Vec3::new(0.62, 0.45, 0.28);
     let side = boarded("wall-side", pine, Vec3::X);
     let end = boarded("wall-end", pine, Vec3::Z);
     let floor = boarded("floor", Vec3::new(0.5, 0.33, 0.19), Vec3::Y);
@@ -89,7 +89,7 @@ fn window(scene: &mut Scene) {
     let sky = Material {
         name: "window".into(),
         base_color: Vec3::splat(0.02),
-        emission: Vec3::new(30.0, 34.0, 38.0),
+        emission: Vec3::new(62.0, 70.0, 80.0),
         roughness: 0.5,
         ..Material::default()
     };

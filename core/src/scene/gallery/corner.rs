@@ -1,6 +1,6 @@
 //! The corner of a closed room that no lamp reaches: all light has bounced at least once.
 //!
-//! A lamp behind a screen lights a wall and the ceiling; these light the corner. Light sources that are put on the
+//! A lamp on a cupboard lights the ceiling, and that lights the corner. Light sources that are put on the
 //! walls instead have their spikes and their darkening where the walls meet and where things touch.
 
 use glam::{Affine3A, Vec2, Vec3};
@@ -50,13 +50,13 @@ fn build(settings: &Settings) -> Scene {
     let floor = Material { base_color_texture: Some(squares), roughness: 0.5, ..paint("floor", Vec3::ONE) };
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [orange, blue, floor, white, white, white]);
-    // From the wall at the back into the room, open above and in front; sunk into floor and wall.
-    let screen = Vec3::new(0.06, 1.63, 1.93);
-    let middle = Vec3::new(-0.55, 0.5 * screen.y - 0.03, -1.33 + 0.5 * screen.z);
-    add(&mut scene, "screen", shape::block(screen, 0.0, 1), white, at(middle));
-    let size = Vec2::new(1.1, 1.0);
-    add_panel(&mut scene, "lamp", Vec3::new(-0.62, 0.95, -0.3), Vec3::NEG_X, size, Vec3::new(26.0, 24.0, 21.0));
+    // The lamp lies on a cupboard above the height of the eye and shines at the ceiling.
+    let cupboard = Vec3::new(0.6, 1.5, 1.36);
+    let middle = Vec3::new(-0.95, 0.5 * cupboard.y - 0.03, -0.4);
+    add(&mut scene, "cupboard", shape::block(cupboard, 0.01, 2), white, at(middle));
+    let size = Vec2::new(0.5, 1.2);
+    add_panel(&mut scene, "lamp", Vec3::new(-0.95, 1.5, -0.4), Vec3::Y, size, Vec3::new(15.0, 14.0, 12.6));
     scene.environment = ambient(Vec3::splat(0.2), Vec3::splat(0.35));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.3, 1.06, 1.16), Vec3::new(0.72, 0.44, -0.62), 0.8));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.1, 1.0, 1.14), Vec3::new(0.74, 0.42, -0.62), 0.76));
     scene
 }

@@ -46,7 +46,7 @@ fn build(settings: &Settings) -> Scene {
     let placed = Affine3A::from_rotation_translation(lying, Vec3::new(0.44, -0.998 + 0.5 * SIZE.x, -0.38));
     add(&mut scene, "crate", boards(), wood, placed);
     room::add_lamp(&mut scene);
-    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.68, 0.2, 0.92), Vec3::new(0.08, -0.45, -0.25), 0.92));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.62, 0.1, 0.9), Vec3::new(0.08, -0.46, -0.25), 0.8));
     scene
 }
 

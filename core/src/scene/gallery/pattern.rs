@@ -37,8 +37,9 @@ const DIGITS: [[u8; 5]; 10] = [
 /// Squares to a side of [`numbered`].
 pub const NUMBERED: usize = 8;
 
-/// Squares of two colours with their numbers in `ink`, row by row from 1, so that each is known again in a reflection.
-pub fn numbered(colors: [Vec3; 2], ink: Vec3) -> Image {
+/// Squares of two colours with their numbers, row by row from 1, each in the other's colour, so that it is known again in
+/// a reflection.
+pub fn numbered(colors: [Vec3; 2]) -> Image {
     // A square of 64 pixels is 8 dots wide: two digits of 3 with a gap between, centred.
     let (square, dot) = (64, 8);
     painted("numbered", NUMBERED * square, |x, y| {
@@ -53,7 +54,7 @@ pub fn numbered(colors: [Vec3; 2], ink: Vec3) -> Image {
         let inked = digit.is_some_and(|(digit, bit)| {
             (2..7).contains(&y) && (digit > 0 || x >= 5) && DIGITS[digit][y - 2] >> bit & 1 == 1
         });
-        if inked { ink } else { colors[(column + row) % 2] }
+        colors[(column + row + usize::from(inked)) % 2]
     })
 }
 
@@ -93,7 +94,7 @@ mod tests {
     #[test]
     fn patterns_fill_their_images_and_hold_both_colours() {
         let [dark, light] = [Vec3::splat(0.1), Vec3::splat(0.6)];
-        for image in [checker(8, [dark, light]), stripes(4, [dark, light]), numbered([dark, light], Vec3::ZERO)] {
+        for image in [checker(8, [dark, light]), stripes(4, [dark, light]), numbered([dark, light])] {
             let Texels::Unorm8(texels) = &image.texels else { panic!("8 bits") };
             assert_eq!(texels.len(), 4 * 512 * 512, "{}", image.name);
             for color in [dark, light] {
@@ -106,7 +107,7 @@ mod tests {
 
     #[test]
     fn numbers_can_be_read() {
-        let image = numbered([Vec3::ONE; 2], Vec3::ZERO);
+        let image = numbered([Vec3::ONE, Vec3::ZERO]);
         let Texels::Unorm8(texels) = &image.texels else { panic!("8 bits") };
         // The 10th square, the second of the second row: dots of `1` and `0` in their middle rows.
         let row: String = (0..8)

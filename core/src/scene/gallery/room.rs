@@ -54,12 +54,12 @@ const SHAPE: ParamSpec = choice_param(
     "A cube, or one with a corner built in so that it is concave.",
 );
 
-const PARAMS: &[ParamSpec] = &[BODY, material_param("Ag"), roughness_param(0.0), at_param([0.22, -0.18, -0.2]), SHAPE];
+const PARAMS: &[ParamSpec] = &[BODY, material_param("Ag"), roughness_param(0.0), at_param([0.24, -0.2, -0.22]), SHAPE];
 
 /// The hollow: the cube from -1 to 1 m.
 pub const ROOM: Room = Room { middle: Vec3::ZERO, half: Vec3::ONE, thickness: 0.12 };
 /// Of the body.
-pub const RADIUS: f32 = 0.28;
+pub const RADIUS: f32 = 0.32;
 
 fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
@@ -74,7 +74,7 @@ fn build(settings: &Settings) -> Scene {
         add(&mut scene, "pillar", shape::block(size, 0.0, 1), walls[1], Affine3A::from_translation(middle));
     }
     add_lamp(&mut scene);
-    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.62, 0.16, 0.9), Vec3::new(0.12, -0.2, -0.2), 1.0));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(-0.52, 0.12, 0.84), Vec3::new(0.14, -0.17, -0.22), 0.88));
     scene
 }
 
@@ -103,7 +103,7 @@ pub fn add_numbered(scene: &mut Scene) -> [usize; 6] {
     let materials = std::array::from_fn(|i| {
         let (name, outward) = SLABS[i];
         let light = Vec3::from_array(hues[i]);
-        let image = pattern::numbered([light, 0.45 * light], light.lerp(Vec3::splat(0.78), 0.75));
+        let image = pattern::numbered([light, 0.5 * light]);
         let size = Vec2::splat(2.0 * ROOM.half.x);
         let texture = in_metres(scene, image, size, ROOM.overlap(outward));
         add_material(scene, Material { base_color_texture: Some(texture), ..paint(name, Vec3::ONE) })
@@ -115,6 +115,6 @@ pub fn add_numbered(scene: &mut Scene) -> [usize; 6] {
 /// Adds the lamp under the ceiling and what stands for the room's light far away.
 pub fn add_lamp(scene: &mut Scene) {
     let position = Vec3::new(0.0, 0.96, 0.1);
-    add_panel(scene, "lamp", position, Vec3::NEG_Y, Vec2::new(0.8, 0.8), Vec3::new(9.0, 8.6, 8.0));
+    add_panel(scene, "lamp", position, Vec3::NEG_Y, Vec2::new(0.8, 0.8), Vec3::new(13.0, 12.4, 11.6));
     scene.environment = ambient(Vec3::new(0.22, 0.2, 0.18), Vec3::new(0.5, 0.48, 0.45));
 }

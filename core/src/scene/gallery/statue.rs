@@ -68,42 +68,38 @@ fn build_statue(settings: &Settings) -> Scene {
     let left = striped(&mut scene, "wall-left", Vec3::new(0.66, 0.16, 0.07), Vec3::X);
     let right = striped(&mut scene, "wall-right", Vec3::new(0.08, 0.3, 0.55), Vec3::X);
     let front = striped(&mut scene, "wall-front", Vec3::new(0.5, 0.5, 0.2), Vec3::Z);
-    let back = add_material(&mut scene, paint("wall-back", Vec3::new(0.5, 0.47, 0.43)));
+    let back = add_material(&mut scene, paint("wall-back", Vec3::new(0.62, 0.58, 0.52)));
     let ceiling = add_material(&mut scene, paint("ceiling", Vec3::splat(0.66)));
     let squares = pattern::checker(2, [Vec3::splat(0.42), Vec3::splat(0.16)]);
     let squares = in_metres(&mut scene, squares, Vec2::splat(0.8), ROOM.overlap(Vec3::Y));
     let floor = Material { base_color_texture: Some(squares), roughness: 0.4, ..paint("floor", Vec3::ONE) };
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [left, right, floor, ceiling, back, front]);
-    let warm = Vec3::new(13.0, 12.0, 10.6);
+    let warm = Vec3::new(22.0, 20.4, 18.0);
     add_panel(&mut scene, "lamp-left", Vec3::new(-0.8, 2.34, 0.75), Vec3::NEG_Y, Vec2::new(0.5, 1.0), warm);
-    let cool = Vec3::new(7.0, 7.6, 8.6);
+    let cool = Vec3::new(12.0, 13.0, 14.6);
     add_panel(&mut scene, "lamp-right", Vec3::new(0.95, 2.34, -0.5), Vec3::NEG_Y, Vec2::new(0.5, 0.8), cool);
     scene.environment = ambient(Vec3::splat(0.16), Vec3::new(0.5, 0.47, 0.43));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.45, 1.02, 1.5), Vec3::new(0.0, 0.86, 0.0), 0.86));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.42, 1.05, 1.5), Vec3::new(0.0, 0.88, 0.0), 0.82));
     scene
 }
 
 fn build_fireballs(settings: &Settings) -> Scene {
     let mut scene = figure(FIREBALLS.name, settings);
-    let slate = add_material(&mut scene, paint("wall", Vec3::new(0.13, 0.13, 0.145)));
-    let floor = Material { roughness: 0.3, ..paint("floor", Vec3::new(0.1, 0.095, 0.09)) };
+    let slate = add_material(&mut scene, paint("wall", Vec3::new(0.26, 0.26, 0.28)));
+    let floor = Material { roughness: 0.3, ..paint("floor", Vec3::new(0.2, 0.19, 0.18)) };
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [slate, slate, floor, slate, slate, slate]);
     // Place, radius and radiance: the further, the larger.
-    let (amber, red, blue, green) = (
-        Vec3::new(90.0, 46.0, 14.0),
-        Vec3::new(80.0, 14.0, 5.0),
-        Vec3::new(12.0, 34.0, 90.0),
-        Vec3::new(18.0, 60.0, 20.0),
-    );
+    let (amber, red, blue, green) =
+        (Vec3::new(22.0, 9.0, 2.2), Vec3::new(22.0, 2.6, 1.0), Vec3::new(2.4, 8.0, 24.0), Vec3::new(3.0, 16.0, 3.4));
     let balls = [
-        (Vec3::new(-0.5, 1.32, 0.3), 0.055, amber),
-        (Vec3::new(0.62, 1.02, 0.2), 0.05, blue),
-        (Vec3::new(-0.66, 0.6, -0.3), 0.06, blue),
-        (Vec3::new(0.5, 0.45, 0.44), 0.04, amber),
-        (Vec3::new(0.42, 1.5, -0.42), 0.06, red),
-        (Vec3::new(-0.36, 0.42, 0.5), 0.035, green),
+        (Vec3::new(-0.5, 1.28, 0.3), 0.08, amber),
+        (Vec3::new(0.62, 1.02, 0.2), 0.075, blue),
+        (Vec3::new(-0.66, 0.62, -0.3), 0.085, blue),
+        (Vec3::new(0.47, 0.6, 0.44), 0.055, amber),
+        (Vec3::new(0.42, 1.46, -0.42), 0.085, red),
+        (Vec3::new(-0.36, 0.62, 0.5), 0.05, green),
     ];
     for (i, (position, radius, radiance)) in balls.into_iter().enumerate() {
         add_glowing_ball(&mut scene, &format!("fireball-{}", i + 1), position, radius, radiance);

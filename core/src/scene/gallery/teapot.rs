@@ -52,15 +52,11 @@ fn build(settings: &Settings) -> Scene {
     let pot = add_material(&mut scene, glossy(metal("subject", &word, roughness)));
     let pot_at = Affine3A::from_translation(Vec3::new(0.0, 1e-4, 0.0)) * Affine3A::from_rotation_y(0.35);
     add_subject(&mut scene, "teapot", shape::teapot(0.1, 112), pot, pot_at);
-    let table = Material {
-        name: "table".into(),
-        base_color: Vec3::new(0.3, 0.32, 0.34),
-        metallic: 1.0,
-        ..glossy(Material::default())
-    };
+    let table =
+        Material { name: "table".into(), base_color: Vec3::new(0.24, 0.25, 0.27), ..glossy(Material::default()) };
     let table = add_material(&mut scene, table);
     let top = shape::block(Vec3::new(3.0, 0.04, 3.0), 0.0, 1);
     add(&mut scene, "table", top, table, Affine3A::from_translation(Vec3::new(0.0, -0.02, 0.0)));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.06, 0.26, 0.62), Vec3::new(0.0, 0.066, 0.0), 0.37));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.06, 0.3, 0.62), Vec3::new(0.0, 0.064, 0.0), 0.36));
     scene
 }

@@ -39,7 +39,7 @@ const PARAMS: &[ParamSpec] = &[
 /// The hollow of both rooms reaches from the floor, y = 0, to 2.2 m.
 const ROOM: Room = Room { middle: Vec3::new(0.0, 1.1, 0.0), half: Vec3::new(2.0, 1.1, 1.5), thickness: 0.15 };
 /// Where the wall ends, along z.
-const END: f32 = 0.72;
+const END: f32 = 0.15;
 
 fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
@@ -62,14 +62,14 @@ fn build(settings: &Settings) -> Scene {
     let warm = add_material(&mut scene, paint("wall-left", Vec3::new(0.7, 0.42, 0.2)));
     let cool = add_material(&mut scene, paint("wall-right", Vec3::new(0.25, 0.42, 0.62)));
     let white = add_material(&mut scene, paint("white", Vec3::splat(0.72)));
-    let dark = add_material(&mut scene, paint("wall-front", Vec3::splat(0.08)));
+    let dark = add_material(&mut scene, paint("wall-front", Vec3::splat(0.3)));
     let squares = pattern::checker(2, [Vec3::splat(0.5), Vec3::splat(0.26)]);
     let squares = in_metres(&mut scene, squares, Vec2::splat(0.5), ROOM.overlap(Vec3::Y));
     let floor = Material { base_color_texture: Some(squares), roughness: 0.5, ..paint("floor", Vec3::ONE) };
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [warm, cool, floor, white, white, dark]);
     let size = Vec2::new(0.9, 0.9);
-    add_panel(&mut scene, "lamp", Vec3::new(-0.85, 2.15, -0.6), Vec3::NEG_Y, size, Vec3::new(13.0, 12.2, 11.0));
+    add_panel(&mut scene, "lamp", Vec3::new(-0.85, 2.15, -0.6), Vec3::NEG_Y, size, Vec3::new(11.0, 10.4, 9.4));
     scene.environment = ambient(Vec3::splat(0.2), Vec3::splat(0.3));
     scene.cameras.push(Camera::look_at("main", Vec3::new(0.05, 1.25, 1.46), Vec3::new(0.01, 0.86, -0.4), 0.92));
     scene

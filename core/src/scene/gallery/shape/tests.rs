@@ -14,6 +14,7 @@ fn bodies() -> Vec<(Mesh, f32)> {
     let quarter = PI * e * e / 4.0 * (r - e + 4.0 * e / (3.0 * PI));
     let corner = e * e * (r - 0.5 * e) - quarter;
     let cylinder_volume = PI * r * r * h - 2.0 * TAU * corner;
+    let tube = PI * 0.05 * 0.05 * LINE.length();
     vec![
         (sphere(0.2, 96), 4.0 / 3.0 * PI * 0.2_f32.powi(3)),
         (torus(0.3, 0.05, 96, 64), 2.0 * PI * PI * 0.3 * 0.05_f32.powi(2)),
@@ -21,8 +22,15 @@ fn bodies() -> Vec<(Mesh, f32)> {
         (block(size, 0.0, 1), size.element_product()),
         (block(size, edge, 12), rounded),
         (ring_segment(), ring_segment_volume()),
+        // Twisting keeps volumes; so does bending, with the length of the curve, where the section's middle is on it.
+        (twisted(block(size, edge, 12), 0.8), rounded),
+        (pierced(Vec3::new(0.5, 0.4, 0.1), Vec2::new(0.05, -0.02), Vec2::new(0.2, 0.1)), 0.1 * (0.2 - 0.02)),
+        (bent(transformed(cylinder(0.05, 0.6, 0.0, 96), &Affine3A::from_translation(0.3 * Vec3::Y)), 0.6, &LINE), tube),
     ]
 }
+
+/// A straight curve at an angle.
+const LINE: Curve = Curve([Vec2::ZERO, Vec2::new(0.1, 0.2), Vec2::new(0.2, 0.4), Vec2::new(0.3, 0.6)]);
 
 const TAU: f32 = std::f32::consts::TAU;
 const RIM: f32 = 0.01;
@@ -63,6 +71,10 @@ fn shapes() -> Vec<Mesh> {
     let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
     all.push(transformed(torus(0.3, 0.05, 48, 24), &skewed));
     all.push(transformed(block(Vec3::new(0.5, 0.3, 0.4), 0.04, 3), &mirror));
+    all.push(blob(0.3, 96));
+    all.push(bowl(0.1, 64));
+    all.push(goblet(0.2, 64));
+    all.push(rod(0.02, &Curve([Vec2::ZERO, Vec2::new(0.2, 0.0), Vec2::new(0.3, 0.2), Vec2::new(0.1, 0.3)]), 32));
     all.push(combined("both", [sphere(0.1, 24), transformed(disc(0.2, 24, 2), &(skewed * mirror))]));
     all
 }

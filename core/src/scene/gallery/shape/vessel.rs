@@ -48,17 +48,15 @@ pub fn bowl(radius: f32, segments: usize) -> Mesh {
 fn pot(radius: f32, segments: usize) -> Mesh {
     let r = radius;
     let corner = |x: f32, y: f32, radius: f32| Corner::round(x * r, y * r, radius * r);
-    let body = [
-        corner(0.0, 1.16, 0.0),
-        corner(0.62, 1.16, 0.0),
-        corner(0.62, 1.2, 0.02),
-        corner(0.7, 1.2, 0.03),
-        corner(0.98, 0.75, 0.3),
-        corner(1.02, 0.35, 0.4),
-        corner(0.66, 0.07, 0.1),
-        corner(0.64, 0.0, 0.02),
-        corner(0.0, 0.0, 0.0),
-    ];
+    // A round belly between a flat top under the lid and a low foot.
+    let belly = Vec2::new(0.38, 0.61) * r;
+    let body = Profile::new()
+        .to(Vec2::new(0.0, 1.15 * r))
+        .to(Vec2::new(0.6 * r, 1.15 * r))
+        .arc(Vec2::new(0.62, 1.15) * r, 0.022 * r, std::f32::consts::PI, -0.2, 8)
+        .arc(belly, 0.6 * r, 1.06, -1.2, 28)
+        .to(Vec2::new(0.62, 0.0) * r)
+        .to(Vec2::ZERO);
     let lid = [
         corner(0.0, 1.62, 0.0),
         corner(0.13, 1.62, 0.1),
@@ -69,8 +67,8 @@ fn pot(radius: f32, segments: usize) -> Mesh {
         corner(0.585, 1.1, 0.0),
         corner(0.0, 1.1, 0.0),
     ];
-    let turned = |outline: &[Corner]| revolve("pot", &Profile::rounded(outline, 10), segments);
-    combined("pot", [turned(&body), turned(&lid)])
+    let lid = revolve("lid", &Profile::rounded(&lid, 10), segments);
+    combined("pot", [revolve("body", &body, segments), lid])
 }
 
 /// A teapot of `radius` metres at its belly, its spout towards +x.
@@ -96,8 +94,7 @@ fn spout_tube(radius: f32, curve: &Curve, around: usize) -> Mesh {
         .to(Vec2::new(tip - wall, 0.6 * length))
         .line(Vec2::new(tip - wall, lip.y), 10)
         .arc(lip, wall, std::f32::consts::PI, 0.0, 8)
-        .line(Vec2::new(tip + wall, 0.7 * length), 10)
-        .line(Vec2::new(root, 0.0), 24)
+        .line(Vec2::new(root, 0.0), 32)
         .to(Vec2::ZERO);
     bent(revolve("spout", &profile, around), length, curve)
 }

@@ -108,7 +108,7 @@ impl Record {
         self.of(self.region()).is_some_and(|(errors, floor)| errors.relmse <= floor.relmse)
     }
 
-    /// Settings that are not at `defaults`, as `key=value` with spaces between.
+    /// All settings as `key=value` with spaces between.
     pub fn settings_text(&self) -> String {
         self.settings.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
     }

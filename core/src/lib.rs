@@ -6,6 +6,7 @@
 
 pub mod color;
 pub mod document;
+pub mod error_map;
 pub mod export;
 pub mod file;
 pub mod import;

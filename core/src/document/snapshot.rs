@@ -75,7 +75,7 @@ pub struct SideEntry {
 }
 
 /// One of two sides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Left.
     A,

@@ -27,4 +27,4 @@ pub use error::RenderError;
 pub use passes::Passes;
 pub use plate::Plate;
 pub use renderer::{Renderer, View};
-pub use viewport::{Drawn, Frame, Picked, Viewport};
+pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};

@@ -1,11 +1,33 @@
 //! Textures and buffers back to the CPU.
 
+use std::sync::mpsc::{Receiver, TryRecvError};
+
 use glam::{UVec2, Vec4};
 
 use crate::device::{Gpu, GpuError};
 
 /// The bytes of one level of one layer, rows without padding.
 pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, layer: u32) -> Result<Vec<u8>, GpuError> {
+    let (buffer, rows) = copy_texture(gpu, texture, level, layer);
+    let bytes = map(gpu, &buffer)?;
+    Ok(rows.of(&bytes))
+}
+
+/// How rows lie in a buffer.
+struct Rows {
+    row: u32,
+    padded: u32,
+}
+
+impl Rows {
+    /// The bytes without padding.
+    fn of(&self, bytes: &[u8]) -> Vec<u8> {
+        bytes.chunks(self.padded as usize).flat_map(|line| &line[..self.row as usize]).copied().collect()
+    }
+}
+
+/// Starts to copy one level of one layer.
+fn copy_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, layer: u32) -> (wgpu::Buffer, Rows) {
     let width = (texture.width() >> level).max(1);
     let height = (texture.height() >> level).max(1);
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
@@ -31,8 +53,39 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, layer: u32) 
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     gpu.queue.submit([encoder.finish()]);
-    let bytes = map(gpu, &buffer)?;
-    Ok(bytes.chunks(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+    (buffer, Rows { row, padded })
+}
+
+/// A texture on its way to the CPU: nobody waits for it.
+pub struct Reading {
+    gpu: Gpu,
+    buffer: wgpu::Buffer,
+    rows: Rows,
+    done: Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl Reading {
+    /// Starts to read the first level of the first layer.
+    pub fn start(gpu: &Gpu, texture: &wgpu::Texture) -> Reading {
+        let (buffer, rows) = copy_texture(gpu, texture, 0, 0);
+        let done = request(&buffer);
+        Reading { gpu: gpu.clone(), buffer, rows, done }
+    }
+
+    /// The bytes, rows without padding; `None` while they are on their way. They are given out once.
+    pub fn poll(&mut self) -> Result<Option<Vec<u8>>, GpuError> {
+        // An error comes up again by the device's own check.
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        match self.done.try_recv() {
+            Err(TryRecvError::Empty) => Ok(None),
+            Err(error) => Err(failed(&error)),
+            Ok(result) => {
+                result.map_err(|e| failed(&e))?;
+                let view = self.buffer.get_mapped_range(..).map_err(|e| failed(&e))?;
+                Ok(Some(self.rows.of(&view)))
+            }
+        }
+    }
 }
 
 /// One texel of a texture of four 32-bit or 16-bit floats.
@@ -74,14 +127,23 @@ fn read_buffer_of(gpu: &Gpu, size: u64) -> wgpu::Buffer {
 }
 
 fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let receive = request(buffer);
+    gpu.wait()?;
+    receive.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+    let view = buffer.get_mapped_range(..).map_err(|e| failed(&e))?;
+    Ok(view.to_vec())
+}
+
+/// Asks for the bytes of a buffer.
+fn request(buffer: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
     let (send, receive) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // The receiver is gone only when this function returned early.
+        // The receiver is gone only when nobody wants the bytes any more.
         let _ = send.send(result);
     });
-    gpu.wait()?;
-    let failed = |reason: String| GpuError::Failed(format!("reading back: {reason}"));
-    receive.recv().map_err(|e| failed(e.to_string()))?.map_err(|e| failed(e.to_string()))?;
-    let view = buffer.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
-    Ok(view.to_vec())
+    receive
+}
+
+fn failed(reason: &dyn std::fmt::Display) -> GpuError {
+    GpuError::Failed(format!("reading back: {reason}"))
 }

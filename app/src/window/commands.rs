@@ -1,7 +1,9 @@
 //! The table of commands: menus, shortcuts, the palette and the shortcut page are made from it.
 
+use burnish_core::document::Side;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::compare::CompareView;
 use super::panel::Pane;
 use super::session::Session;
 
@@ -64,6 +66,14 @@ pub enum Command {
     SaveCamera,
     /// The reference instead of the live picture.
     Reference,
+    /// Two pictures, or one again.
+    Compare(CompareView),
+    /// Keeps the document as a side of the comparison.
+    StoreSide(Side),
+    /// Exchanges the sides.
+    SwapSides,
+    /// Keeps the document under a name.
+    TakeSnapshot,
     /// What importers said.
     Notices,
     /// Shows a panel or puts it away.
@@ -99,6 +109,8 @@ pub enum Menu {
     Material,
     /// Objects.
     Object,
+    /// Snapshots and pairs of pictures.
+    Compare,
     /// Camera and window.
     View,
     /// Help.
@@ -107,7 +119,8 @@ pub enum Menu {
 
 impl Menu {
     /// In the order of the bar.
-    pub const ALL: [Menu; 6] = [Menu::File, Menu::Edit, Menu::Material, Menu::Object, Menu::View, Menu::Help];
+    pub const ALL: [Menu; 7] =
+        [Menu::File, Menu::Edit, Menu::Material, Menu::Object, Menu::Compare, Menu::View, Menu::Help];
 
     /// Title in the bar.
     pub fn title(self) -> &'static str {
@@ -116,6 +129,7 @@ impl Menu {
             Menu::Edit => "Edit",
             Menu::Material => "Material",
             Menu::Object => "Object",
+            Menu::Compare => "Compare",
             Menu::View => "View",
             Menu::Help => "Help",
         }
@@ -161,6 +175,10 @@ const fn entry(
 
 const fn panel(pane: Pane, title: &'static str, help: &'static str) -> Entry {
     entry(Menu::View, Command::Panel(pane), title, None, help)
+}
+
+const fn compare(view: CompareView, title: &'static str, shortcut: Key, help: &'static str) -> Entry {
+    entry(Menu::Compare, Command::Compare(view), title, key(shortcut), help)
 }
 
 /// All commands, in the order of the menus.
@@ -209,6 +227,37 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::Object, Command::Hide, "Hide", key(Key::H), "Hide the selected objects."),
     entry(Menu::Object, Command::Isolate, "Isolate", key(Key::I), "Hide all other objects."),
     entry(Menu::Object, Command::ShowAll, "Show all", ctrl_shift(Key::H), "Show every object."),
+    compare(CompareView::Wipe, "Wipe", Key::W, "Side A left of a line that is dragged, side B right of it."),
+    compare(CompareView::SideBySide, "Side by side", Key::S, "Side A in the left half, side B in the right one."),
+    compare(CompareView::Difference, "Difference", Key::D, "Where side B differs from side A, as a heat map."),
+    compare(
+        CompareView::Error,
+        "Error heat map",
+        Key::E,
+        "Where the live picture differs from the path-traced reference, as a heat map.",
+    ),
+    entry(
+        Menu::Compare,
+        Command::StoreSide(Side::A),
+        "Store as A",
+        ctrl(Key::Num1),
+        "Keep the document as it is now as side A.",
+    ),
+    entry(
+        Menu::Compare,
+        Command::StoreSide(Side::B),
+        "Store as B",
+        ctrl(Key::Num2),
+        "Keep the document as it is now as side B.",
+    ),
+    entry(Menu::Compare, Command::SwapSides, "Swap A and B", key(Key::X), "Exchange the sides."),
+    entry(
+        Menu::Compare,
+        Command::TakeSnapshot,
+        "Take snapshot",
+        ctrl_shift(Key::N),
+        "Keep the document as it is now under a name.",
+    ),
     entry(Menu::View, Command::Frame, "Frame selection", key(Key::F), "Bring the selected objects into view."),
     entry(Menu::View, Command::FrameAll, "Frame all", key(Key::Home), "Bring everything into view."),
     entry(Menu::View, Command::ViewFront, "Front view", key(Key::Num1), "Look from the front."),
@@ -228,6 +277,7 @@ pub const TABLE: &[Entry] = &[
     panel(Pane::Material, "Material panel", "Show the material's factors or put them away."),
     panel(Pane::Presets, "Presets panel", "Show the metals or put them away."),
     panel(Pane::Environment, "Environment panel", "Show light and view or put them away."),
+    panel(Pane::Compare, "Compare panel", "Show snapshots and what differs between A and B or put them away."),
     panel(Pane::Reflectance, "Reflectance panel", "Show the plot of reflectance or put it away."),
     panel(Pane::History, "History panel", "Show the list of steps or put it away."),
     entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
@@ -257,6 +307,7 @@ impl Entry {
                 | Command::ViewFront
                 | Command::SaveCamera
                 | Command::Reference
+                | Command::StoreSide(Side::A)
                 | Command::Panel(Pane::Viewport)
                 | Command::ScaleUp
                 | Command::ThemeSystem

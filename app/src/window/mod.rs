@@ -5,6 +5,7 @@
 //! [`Session::edit`] and ask for the rest by [`Request`]s. The picture comes from [`Stage`].
 
 mod commands;
+mod compare;
 mod edits;
 mod files;
 mod icon;
@@ -18,6 +19,7 @@ mod reference;
 mod request;
 mod session;
 mod shortcuts;
+mod snapshots;
 mod stage;
 mod still_plot;
 mod table_import;
@@ -29,6 +31,7 @@ mod widget;
 mod workbench;
 
 pub use commands::{Command, Entry, Menu, TABLE};
+pub use compare::{Compare, CompareView, Legend};
 pub use files::Folders;
 pub use native::run;
 pub use panel::Pane;

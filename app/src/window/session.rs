@@ -39,6 +39,8 @@ pub struct Session {
     pub now_secs: f64,
     /// Counts every change of the document, for whoever wants to notice one.
     pub revision: u64,
+    /// Counts every change of the files.
+    pub files_revision: u64,
 }
 
 impl Session {
@@ -62,6 +64,7 @@ impl Session {
             missing,
             now_secs: 0.0,
             revision: 0,
+            files_revision: 0,
         }
     }
 
@@ -128,6 +131,7 @@ impl Session {
     /// Takes over files that were read.
     pub fn edit_sources(&mut self, change: impl FnOnce(&mut Sources)) {
         change(&mut self.sources);
+        self.files_revision += 1;
         self.refresh();
     }
 
@@ -155,6 +159,7 @@ impl Session {
         self.clipboard = former.clipboard;
         self.now_secs = former.now_secs;
         self.revision = former.revision + 1;
+        self.files_revision = former.files_revision + 1;
     }
 
     /// The document has changes that no file holds, such as after a recovery.

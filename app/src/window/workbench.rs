@@ -7,6 +7,7 @@ use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
 use super::commands::{Command, Entry, Menu, TABLE};
+use super::compare::Compare;
 use super::files::{Files, Folders, is_table};
 use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
@@ -14,6 +15,7 @@ use super::preferences::Preferences;
 use super::reference::Reference;
 use super::request::{Request, Requests};
 use super::session::Session;
+use super::snapshots;
 use super::stage::Stage;
 use super::table_import::{Origin, TableImport};
 use super::thumbnails::Thumbnails;
@@ -43,6 +45,7 @@ pub struct Workbench {
     preferences: Preferences,
     stage: Stage,
     reference: Reference,
+    compare: Compare,
     panels: Panels,
     tree: Tree<Pane>,
     /// The layout differs from that of the preferences.
@@ -79,6 +82,7 @@ impl Workbench {
             preferences,
             stage,
             reference: Reference::default(),
+            compare: Compare::default(),
             panels: Panels::default(),
             start: start.then(StartPage::default),
             status: StatusLine::default(),
@@ -120,7 +124,7 @@ impl Workbench {
 
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.tables.is_busy() || self.thumbnails.is_drawing()
+        self.files.is_busy() || self.tables.is_busy() || self.thumbnails.is_drawing() || self.compare.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -168,6 +172,11 @@ impl Workbench {
         &self.reference
     }
 
+    /// Two pictures.
+    pub fn compare(&self) -> &Compare {
+        &self.compare
+    }
+
     /// The source of the picture, for trials of its faults.
     pub fn stage_mut(&mut self) -> &mut Stage {
         &mut self.stage
@@ -179,7 +188,7 @@ impl Workbench {
         self.session.now_secs = ui.input(|input| input.time);
         let revision = self.session.revision;
         if ui.input(is_used) {
-            self.reference.note_input();
+            self.note_input();
         }
         self.shortcuts(ui);
         egui::Panel::top("menu").show(ui, |ui| self.menu_ui(ui));
@@ -188,6 +197,7 @@ impl Workbench {
             preferences,
             stage,
             reference,
+            compare,
             panels,
             tree,
             start,
@@ -210,7 +220,7 @@ impl Workbench {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }
         }
-        let mut context = Context { session, preferences, stage, reference, requests, own, thumbnails };
+        let mut context = Context { session, preferences, stage, reference, compare, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);
@@ -242,11 +252,18 @@ impl Workbench {
         self.toasts.ui(ui.ctx(), middle);
         self.keep_layout(ui.ctx());
         self.reference.end_frame();
+        self.compare.end_frame(&mut self.stage);
         // The picture was drawn before the panel that changed it.
         if self.session.revision != revision {
-            self.reference.note_input();
+            self.note_input();
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Whoever traces leaves the processor to the user for a while.
+    fn note_input(&self) {
+        self.reference.note_input();
+        self.compare.note_input();
     }
 
     /// What lies over the panels: palette and shortcut page.
@@ -321,7 +338,8 @@ impl Workbench {
         match command {
             Command::Panel(pane) => Some(layout::is_shown(&self.tree, pane)),
             Command::Orthographic => Some(self.session.document().view.camera.orthographic),
-            Command::Reference => Some(self.reference.is_on()),
+            Command::Reference => Some(self.reference.is_on() && self.compare.view().is_none()),
+            Command::Compare(view) => Some(self.compare.view() == Some(view)),
             Command::ThemeSystem => Some(self.preferences.dark.is_none()),
             Command::ThemeLight => Some(self.preferences.dark == Some(false)),
             Command::ThemeDark => Some(self.preferences.dark == Some(true)),
@@ -367,7 +385,17 @@ impl Workbench {
                 self.show_panel(Pane::Scene);
                 self.panels.scene.rename(&self.session);
             }
-            Command::Reference => self.reference.switch(!self.reference.is_on()),
+            Command::Reference => {
+                self.reference.switch(!self.reference.is_on());
+                self.compare.show(None);
+            }
+            Command::Compare(view) => {
+                self.reference.switch(false);
+                self.compare.show(Some(view).filter(|view| self.compare.view() != Some(*view)));
+            }
+            Command::StoreSide(_) | Command::SwapSides | Command::TakeSnapshot => {
+                snapshots::command(command, &mut self.session, &mut self.requests);
+            }
             Command::Panel(pane) => {
                 layout::toggle(&mut self.tree, pane);
                 self.rearranged = true;

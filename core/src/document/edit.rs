@@ -186,15 +186,33 @@ impl Document {
         }
     }
 
-    /// Lets every slot with a picture from one file have it from another.
+    /// Takes an environment from another file, in snapshots too.
+    pub fn replace_map(&mut self, old: &str, new: &str) {
+        let replace = |source: &mut Option<String>| {
+            if source.as_deref() == Some(old) {
+                *source = Some(new.into());
+            }
+        };
+        replace(&mut self.environment.source);
+        for snapshot in self.snapshots.iter_mut().filter(|s| s.environment.source.as_deref() == Some(old)) {
+            replace(&mut Arc::make_mut(snapshot).environment.source);
+        }
+    }
+
+    /// Lets every slot with a picture from one file have it from another, in snapshots too.
     pub fn replace_texture_file(&mut self, old: &str, new: &str) {
-        for entry in &mut self.materials {
-            if entry.textures.values().any(|choice| *choice == TextureChoice::File(old.into())) {
+        let replace = |materials: &mut Vec<Arc<MaterialEntry>>| {
+            let has_it = |entry: &MaterialEntry| entry.textures.values().any(|c| *c == TextureChoice::File(old.into()));
+            for entry in materials.iter_mut().filter(|entry| has_it(entry)) {
                 let choices = Arc::make_mut(entry).textures.values_mut();
                 for choice in choices.filter(|choice| **choice == TextureChoice::File(old.into())) {
                     *choice = TextureChoice::File(new.into());
                 }
             }
+        };
+        replace(&mut self.materials);
+        for snapshot in &mut self.snapshots {
+            replace(&mut Arc::make_mut(snapshot).materials);
         }
     }
 
@@ -360,7 +378,7 @@ impl MaterialEntry {
 }
 
 /// The first of `name`, `name 2`, `name 3` ... that is not taken.
-fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+pub(super) fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.into();
     }

@@ -1,12 +1,15 @@
 //! Documents as files: JSON with format and version, paths relative to the file.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::{CameraEntry, Document, TextureChoice, absolute, relative};
+use super::snapshot::{Snapshot, each_texture_path};
+use super::{CameraEntry, Document, EnvironmentEntry, MaterialEntry, ViewEntry, absolute, relative};
 use crate::file::{FileError, read_bounded, write_atomic};
+use crate::material::preset::Preset;
 
 /// Value of the field `format`.
 pub const FORMAT: &str = "burnish-document";
@@ -72,6 +75,7 @@ impl Document {
         document.check().map_err(|reason| invalid(reason, "mend the field, or open an older copy"))?;
         let folder = folder_of(path);
         document.each_path(|stored| *stored = absolute(stored, &folder));
+        document.share_snapshots();
         Ok(document)
     }
 
@@ -101,28 +105,23 @@ impl Document {
 
     /// What no program would have written, although it is JSON of the right shape.
     fn check(&self) -> Result<(), String> {
-        let numbers = [
-            ("environment.rotation_deg", self.environment.rotation_deg, -1e6..=1e6),
-            ("environment.strength", self.environment.strength, 0.0..=1e6),
-            ("view.exposure_ev", self.view.exposure_ev, -64.0..=64.0),
-        ];
-        for (field, value, range) in numbers {
-            if !range.contains(&value) {
-                return Err(format!("field `{field}` is {value}; it takes {} to {}", range.start(), range.end()));
-            }
-        }
-        check_camera("view.camera", &self.view.camera)?;
+        let state = State {
+            materials: &self.materials,
+            presets: &self.presets,
+            environment: &self.environment,
+            view: &self.view,
+        };
+        state.check("")?;
         for (place, camera) in self.cameras.iter().enumerate() {
             check_camera(&format!("cameras[{place}]"), camera)?;
         }
-        let mut names = std::collections::BTreeSet::new();
-        for material in &self.materials {
-            if !names.insert(material.name.as_str()) {
-                return Err(format!("two materials are called `{}`", material.name));
+        let mut names = BTreeSet::new();
+        for (place, snapshot) in self.snapshots.iter().enumerate() {
+            if !names.insert(snapshot.name.as_str()) {
+                return Err(format!("two snapshots are called `{}`", snapshot.name));
             }
-        }
-        for preset in &self.presets {
-            preset.check("field `presets`").map_err(|e| e.to_string())?;
+            let Snapshot { materials, presets, environment, view, .. } = &**snapshot;
+            State { materials, presets, environment, view }.check(&format!("snapshots[{place}]."))?;
         }
         Ok(())
     }
@@ -135,15 +134,47 @@ impl Document {
         if let Some(source) = &mut self.environment.source {
             visit(source);
         }
-        for entry in &mut self.materials {
-            if entry.textures.values().any(|choice| matches!(choice, TextureChoice::File(_))) {
-                for choice in Arc::make_mut(entry).textures.values_mut() {
-                    if let TextureChoice::File(path) = choice {
-                        visit(path);
-                    }
-                }
+        each_texture_path(&mut self.materials, &mut visit);
+        for snapshot in &mut self.snapshots {
+            Snapshot::each_path(snapshot, &mut visit);
+        }
+    }
+}
+
+/// What a document and its snapshots have in common.
+struct State<'a> {
+    materials: &'a [Arc<MaterialEntry>],
+    presets: &'a [Arc<Preset>],
+    environment: &'a EnvironmentEntry,
+    view: &'a ViewEntry,
+}
+
+impl State<'_> {
+    /// See [`Document::check`]; `place` is what its fields follow.
+    fn check(&self, place: &str) -> Result<(), String> {
+        let State { materials, presets, environment, view } = self;
+        let numbers = [
+            ("environment.rotation_deg", environment.rotation_deg, -1e6..=1e6),
+            ("environment.strength", environment.strength, 0.0..=1e6),
+            ("view.exposure_ev", view.exposure_ev, -64.0..=64.0),
+        ];
+        for (field, value, range) in numbers {
+            if !range.contains(&value) {
+                let (start, end) = (range.start(), range.end());
+                return Err(format!("field `{place}{field}` is {value}; it takes {start} to {end}"));
             }
         }
+        check_camera(&format!("{place}view.camera"), &view.camera)?;
+        let mut names = BTreeSet::new();
+        for material in *materials {
+            if !names.insert(material.name.as_str()) {
+                return Err(format!("two materials are called `{}`", material.name));
+            }
+        }
+        for preset in *presets {
+            preset.check(&format!("field `{place}presets`")).map_err(|e| e.to_string())?;
+        }
+        Ok(())
     }
 }
 

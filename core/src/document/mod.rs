@@ -5,6 +5,7 @@
 //! drawn, [`History`] undoes. No window and no GPU here: the command line uses the same functions.
 
 mod camera;
+mod difference;
 mod edit;
 mod format;
 mod history;
@@ -12,6 +13,7 @@ mod keys;
 mod open;
 mod paths;
 mod resolve;
+mod snapshot;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -26,6 +28,7 @@ use crate::param::{self, ParamSpec, ParamValue, Settings};
 use crate::reference;
 use crate::surface::fresnel::Form;
 
+pub use difference::{Difference, Part, Place, differences};
 pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
@@ -35,6 +38,7 @@ pub use open::{
 };
 pub use paths::{absolute, relative};
 pub use resolve::{Curves, Resolved, resolve};
+pub use snapshot::{CompareEntry, Side, SideEntry, Snapshot};
 
 /// Scene of a new document.
 pub const DEFAULT_SCENE: &str = "gallery:workbench";
@@ -71,6 +75,12 @@ pub struct Document {
     /// What the viewport shows.
     #[serde(default)]
     pub view: ViewEntry,
+    /// States that were kept under names.
+    #[serde(default, with = "shared", skip_serializing_if = "Vec::is_empty")]
+    pub snapshots: Vec<Arc<Snapshot>>,
+    /// Which of them are compared.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub compare: CompareEntry,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -241,6 +251,10 @@ mod shared {
     pub fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Vec<Arc<T>>, D::Error> {
         Ok(Vec::<T>::deserialize(from)?.into_iter().map(Arc::new).collect())
     }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 fn one() -> f64 {

@@ -93,7 +93,7 @@ pub fn reload(mut document: Document, known: &Sources) -> Opened {
         }
         Err(reason) => missing.push(Missing { kind: MissingKind::Model, path, reason }),
     }
-    if let Some(path) = document.environment.source.clone() {
+    for path in document.maps() {
         match known.environments.get(&path).map(|map| Ok((map.clone(), Vec::new()))).unwrap_or_else(|| load_map(&path))
         {
             Ok((map, more)) => {
@@ -158,13 +158,26 @@ impl Document {
             cameras: Vec::new(),
             lighting: Default::default(),
             view: Default::default(),
+            snapshots: Vec::new(),
+            compare: Default::default(),
             other: Map::new(),
         }
     }
 
-    /// Paths of the textures that were loaded into slots, each once.
+    /// Paths of its environment and those of its snapshots, each once.
+    pub fn maps(&self) -> Vec<String> {
+        let of_snapshots = self.snapshots.iter().map(|snapshot| &snapshot.environment);
+        let mut paths: Vec<String> =
+            std::iter::once(&self.environment).chain(of_snapshots).filter_map(|e| e.source.clone()).collect();
+        paths.sort();
+        paths.dedup();
+        paths
+    }
+
+    /// Paths of the textures that were loaded into slots, also those of snapshots, each once.
     pub fn texture_files(&self) -> Vec<String> {
-        let choices = self.materials.iter().flat_map(|entry| entry.textures.values());
+        let of_snapshots = self.snapshots.iter().flat_map(|snapshot| &snapshot.materials);
+        let choices = self.materials.iter().chain(of_snapshots).flat_map(|entry| entry.textures.values());
         let mut paths: Vec<String> = choices
             .filter_map(|choice| match choice {
                 TextureChoice::File(path) => Some(path.clone()),

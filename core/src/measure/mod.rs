@@ -4,6 +4,7 @@
 //! screen. Alpha is ignored: pictures are compared as they stand over black.
 
 pub mod bench;
+pub mod error_map;
 mod errors;
 mod flip;
 mod times;

@@ -9,9 +9,10 @@ use std::time::Instant;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::param::Settings;
+use burnish_core::picture::Picture;
 use burnish_core::scene::{Camera, Projection, Scene};
 use burnish_core::surface::ggx::Masking;
-use glam::{Affine3A, UVec2, Vec2, Vec3};
+use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
 
 use crate::device::Gpu;
 use crate::error::RenderError;
@@ -19,7 +20,7 @@ use crate::frame::{Encoding, Jitter, Targets};
 use crate::pass::environment::{Progress, Refinement};
 use crate::pass::{display, target};
 use crate::passes::Passes;
-use crate::readback::read_texel;
+use crate::readback::{Reading, read_texel};
 use crate::renderer::check_size;
 use crate::resident::{Loader, Quality, Resident};
 use pace::Pace;
@@ -337,6 +338,13 @@ impl Viewport {
         Ok(resident.scene.pick(camera.ray(at, size.x / size.y)))
     }
 
+    /// Starts to read the picture; `None` unless it is at rest.
+    pub fn read(&self) -> Option<PendingPicture> {
+        let (canvas, still) = self.full.as_ref().filter(|(_, still)| still.settled())?;
+        let reading = Reading::start(&self.passes().gpu, still.sums.texture());
+        Some(PendingPicture { reading, size: canvas.targets.size, frames: still.frames })
+    }
+
     /// Scene-linear radiance of the picture under a point, 0 to 1 from its top left: the mean of its frames.
     pub fn radiance(&mut self, at: Vec2) -> Result<Option<Vec3>, RenderError> {
         let gpu = &self.loader.passes.gpu;
@@ -354,6 +362,24 @@ impl Viewport {
             _ => read_texel(gpu, canvas.targets.frame.texture(), pixel)?,
         };
         Ok(Some(texel.truncate()))
+    }
+}
+
+/// The picture at rest on its way to the CPU.
+pub struct PendingPicture {
+    reading: Reading,
+    size: UVec2,
+    frames: u32,
+}
+
+impl PendingPicture {
+    /// Scene-linear radiance, the mean of the frames; `None` while it is on its way. It is given out once.
+    pub fn poll(&mut self) -> Result<Option<Picture>, RenderError> {
+        let Some(bytes) = self.reading.poll()? else { return Ok(None) };
+        let (floats, _) = bytes.as_chunks::<16>();
+        let scale = 1.0 / self.frames.max(1) as f32;
+        let texels = floats.iter().map(|texel| bytemuck::pod_read_unaligned::<Vec4>(texel) * scale).collect();
+        Ok(Some(Picture { width: self.size.x, height: self.size.y, texels }))
     }
 }
 

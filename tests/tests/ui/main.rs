@@ -4,6 +4,7 @@
 //! monkey loose twenty times.
 
 mod bench;
+mod compare;
 mod import;
 mod looks;
 mod monkey;
@@ -18,6 +19,7 @@ fn main() {
         workflow::trials(),
         import::trials(),
         looks::trials(),
+        compare::trials(),
         monkey::trials(),
         reference::trials(),
         snapshot::trials(),

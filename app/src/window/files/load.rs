@@ -277,7 +277,7 @@ fn land_relinked(landing: &mut Landing<'_>, found: Vec<(String, String, Read)>) 
                     document.scene = new.clone();
                     document.sync(model);
                 }
-                Content::Map(_) => document.environment.source = Some(new.clone()),
+                Content::Map(_) => document.replace_map(old, new),
                 Content::Image(_) => document.replace_texture_file(old, new),
             }
         }
@@ -329,14 +329,14 @@ impl Read {
 /// Every file that a document refers to.
 pub fn files_of(document: &Document) -> Vec<String> {
     let model = Some(document.scene.clone()).filter(|scene| !scene.starts_with("gallery:"));
-    model.into_iter().chain(document.environment.source.clone()).chain(document.texture_files()).collect()
+    model.into_iter().chain(document.maps()).chain(document.texture_files()).collect()
 }
 
 /// What a file of a document is; `None` when the document does not refer to it.
 pub fn kind_of(document: &Document, path: &str) -> Option<MissingKind> {
     if document.scene == path {
         Some(MissingKind::Model)
-    } else if document.environment.source.as_deref() == Some(path) {
+    } else if document.maps().iter().any(|map| map == path) {
         Some(MissingKind::Environment)
     } else {
         document.texture_files().iter().any(|file| file == path).then_some(MissingKind::Texture)

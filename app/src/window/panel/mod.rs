@@ -1,5 +1,6 @@
 //! The panels, one file each. A panel keeps what only it shows; documents, scenes and files are the session's.
 
+mod compare;
 mod environment;
 mod history;
 mod material;
@@ -13,6 +14,7 @@ mod viewport;
 use eframe::egui::{self, WidgetText};
 use serde::{Deserialize, Serialize};
 
+use super::compare::Compare;
 use super::preferences::Preferences;
 use super::reference::Reference;
 use super::request::Requests;
@@ -21,6 +23,7 @@ use super::stage::Stage;
 use super::thumbnails::Thumbnails;
 use super::user_presets::UserPresets;
 
+pub use compare::ComparePanel;
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
 pub use material::MaterialPanel;
@@ -41,6 +44,8 @@ pub struct Context<'a> {
     pub stage: &'a mut Stage,
     /// The path-traced one.
     pub reference: &'a mut Reference,
+    /// Two pictures.
+    pub compare: &'a mut Compare,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
     /// The user's presets.
@@ -68,6 +73,8 @@ pub enum Pane {
     Presets,
     /// Light and view.
     Environment,
+    /// Snapshots and what differs between two.
+    Compare,
     /// Reflectance against angle.
     Reflectance,
     /// Steps to undo.
@@ -76,12 +83,13 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Pane; 7] = [
+    pub const ALL: [Pane; 8] = [
         Pane::Viewport,
         Pane::Scene,
         Pane::Material,
         Pane::Presets,
         Pane::Environment,
+        Pane::Compare,
         Pane::Reflectance,
         Pane::History,
     ];
@@ -94,6 +102,7 @@ impl Pane {
             Pane::Material => "Material",
             Pane::Presets => "Presets",
             Pane::Environment => "Environment",
+            Pane::Compare => "Compare",
             Pane::Reflectance => "Reflectance",
             Pane::History => "History",
         }
@@ -116,6 +125,7 @@ pub struct Panels {
     /// Also shows what came in.
     pub presets: PresetsPanel,
     environment: EnvironmentPanel,
+    compare: ComparePanel,
     reflectance: ReflectancePanel,
     history: HistoryPanel,
 }
@@ -128,6 +138,7 @@ impl Panels {
             Pane::Material => self.material.ui(ui, context),
             Pane::Presets => self.presets.ui(ui, context),
             Pane::Environment => self.environment.ui(ui, context),
+            Pane::Compare => self.compare.ui(ui, context),
             Pane::Reflectance => self.reflectance.ui(ui, context),
             Pane::History => self.history.ui(ui, context),
         }

@@ -60,6 +60,8 @@ pub struct Reference {
     on: bool,
     /// The viewport asked for a picture in this frame.
     asked: bool,
+    /// It asked in the last one.
+    watched: bool,
     desk: Arc<Desk>,
     started: bool,
     look: Option<Look>,
@@ -158,6 +160,7 @@ impl Default for Reference {
         Reference {
             on: false,
             asked: false,
+            watched: false,
             desk: Arc::default(),
             started: false,
             look: None,
@@ -180,7 +183,7 @@ impl Reference {
 
     /// Someone uses mouse or keyboard: the processor is theirs for a while.
     pub fn note_input(&self) {
-        if self.on {
+        if self.on || self.watched {
             self.desk.rest();
         }
     }
@@ -206,7 +209,8 @@ impl Reference {
 
     /// Ends a frame of the window: nothing is traced for a viewport that is not seen.
     pub fn end_frame(&mut self) {
-        if !std::mem::take(&mut self.asked) {
+        self.watched = std::mem::take(&mut self.asked);
+        if !self.watched {
             self.desk.close();
         }
     }
@@ -214,6 +218,21 @@ impl Reference {
     /// The picture that is shown.
     pub fn shown(&self) -> Option<&Look> {
         self.look.as_ref().filter(|_| self.on)
+    }
+
+    /// The newest picture of what was asked for last, whether the reference is on or not.
+    pub fn latest(&self) -> Option<&Look> {
+        self.look.as_ref()
+    }
+
+    /// How far that picture is, in words; `timed` with the seconds that it took.
+    pub fn text_of_look(&self, timed: bool) -> String {
+        self.look.as_ref().map_or_else(|| "reference begins".into(), |look| format!("reference, {}", look.text(timed)))
+    }
+
+    /// Why the last picture that was asked for failed.
+    pub fn failure(&self) -> Option<&str> {
+        self.fault.as_deref()
     }
 
     /// Why there is no picture, in words.

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, Plate, RenderError, Viewport};
+use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, PendingPicture, Plate, RenderError, Viewport};
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
 
-use super::{LossLog, Shown, Status, Trial};
+use super::{LossLog, Screen, Shown, Status, Trial};
 
 /// A viewport on the window's device.
 pub struct Live {
@@ -19,14 +19,27 @@ pub struct Live {
     viewport: Viewport,
     /// For pictures that are computed elsewhere.
     plate: Plate,
-    /// The view that egui knows, and as what.
-    texture: Option<(wgpu::TextureView, TextureId)>,
+    texture: Known,
+    /// The other side of a comparison, while there is one.
+    second: Option<Second>,
     status: Status,
     losses: LossLog,
     condition: Condition,
     /// The window was not shown yet.
     first: bool,
     trial: Option<Trial>,
+}
+
+/// The view that egui knows, and as what.
+type Known = Option<(wgpu::TextureView, TextureId)>;
+
+/// A second picture on the same device.
+struct Second {
+    /// Made when something is drawn on it.
+    viewport: Option<Viewport>,
+    plate: Plate,
+    texture: Known,
+    settled: bool,
 }
 
 /// Whether there is something to draw with.
@@ -55,6 +68,7 @@ impl Live {
             viewport,
             render,
             texture: None,
+            second: None,
             status,
             losses,
             condition: Condition::Sound,
@@ -70,36 +84,66 @@ impl Live {
     }
 
     /// Draws what is due.
-    pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
-        self.attempt(|live| live.try_draw(scene, frame))
+    pub fn draw(&mut self, screen: Screen, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        self.attempt(screen, |live| match screen {
+            Screen::Main => live.try_draw(scene, frame),
+            Screen::Second => live.try_draw_second(scene, frame),
+        })
     }
 
     /// Shows a picture that was computed elsewhere.
-    pub fn show(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
-        let shown = self.attempt(|live| {
+    pub fn show(&mut self, screen: Screen, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+        let shown = self.attempt(screen, |live| {
             live.fail_for_trial()?;
-            live.plate.draw(picture, tone, exposure_ev)?;
-            live.present(live.plate.output().cloned());
+            match screen {
+                Screen::Main => {
+                    live.plate.draw(picture, tone, exposure_ev)?;
+                    present(&live.render, &mut live.texture, live.plate.output());
+                }
+                Screen::Second => {
+                    let (render, second) = live.second();
+                    second.plate.draw(picture, tone, exposure_ev)?;
+                    present(render, &mut second.texture, second.plate.output());
+                }
+            }
             Ok(())
         });
         // Whoever computes it tells when there is more.
         Shown { settled: shown.texture.is_some(), ..shown }
     }
 
-    fn attempt(&mut self, work: impl FnOnce(&mut Live) -> Result<(), RenderError>) -> Shown {
+    fn second(&mut self) -> (&RenderState, &mut Second) {
+        let passes = self.viewport.passes();
+        let second = self.second.get_or_insert_with(|| Second {
+            viewport: None,
+            plate: Plate::new(passes),
+            texture: None,
+            settled: false,
+        });
+        (&self.render, second)
+    }
+
+    /// Frees what the second screen takes.
+    pub fn close_second(&mut self) {
+        if let Some((_, id)) = self.second.take().and_then(|second| second.texture) {
+            self.render.renderer.write().free_texture(&id);
+        }
+    }
+
+    fn attempt(&mut self, screen: Screen, work: impl FnOnce(&mut Live) -> Result<(), RenderError>) -> Shown {
         if std::mem::take(&mut self.first) {
             // The window appears at once, its picture when the shaders are compiled.
             return Shown::default();
         }
         match self.condition {
             Condition::Sound => {}
-            Condition::Restart => return self.shown(Some("The graphics device was lost.".into()), false),
-            Condition::GivenUp => return self.shown(Some(LossLog::GIVEN_UP.into()), false),
+            Condition::Restart => return self.shown(screen, Some("The graphics device was lost.".into()), false),
+            Condition::GivenUp => return self.shown(screen, Some(LossLog::GIVEN_UP.into()), false),
         }
         match work(self) {
-            Ok(()) => self.shown(None, false),
-            Err(RenderError::Gpu(error)) => self.recover(&error),
-            Err(error) => self.shown(Some(error.to_string()), false),
+            Ok(()) => self.shown(screen, None, false),
+            Err(RenderError::Gpu(error)) => self.recover(screen, &error),
+            Err(error) => self.shown(screen, Some(error.to_string()), false),
         }
     }
 
@@ -121,40 +165,38 @@ impl Live {
         }
         self.status.size = frame.size;
         self.status.drawn = drawn;
-        self.present(self.viewport.output().cloned());
+        present(&self.render, &mut self.texture, self.viewport.output());
         Ok(())
     }
 
-    /// Makes egui know the picture.
-    fn present(&mut self, view: Option<wgpu::TextureView>) {
-        let Some(view) = &view else { return };
-        let filter = wgpu::FilterMode::Linear;
-        let mut renderer = self.render.renderer.write();
-        match &mut self.texture {
-            Some((known, _)) if known == view => {}
-            Some((known, id)) => {
-                renderer.update_egui_texture_from_wgpu_texture(&self.render.device, view, filter, *id);
-                *known = view.clone();
-            }
-            None => {
-                let id = renderer.register_native_texture(&self.render.device, view, filter);
-                self.texture = Some((view.clone(), id));
-            }
-        }
+    fn try_draw_second(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Result<(), RenderError> {
+        self.fail_for_trial()?;
+        let passes = self.viewport.passes().clone();
+        let (render, second) = self.second();
+        let viewport = second.viewport.get_or_insert_with(|| Viewport::with_passes(&passes));
+        viewport.set_scene(scene)?;
+        second.settled = viewport.draw(frame)?.settled;
+        present(render, &mut second.texture, viewport.output());
+        Ok(())
     }
 
-    fn shown(&mut self, message: Option<String>, lost: bool) -> Shown {
+    fn shown(&mut self, screen: Screen, message: Option<String>, lost: bool) -> Shown {
         self.status.message.clone_from(&message);
+        let (texture, settled) = match (screen, &self.second) {
+            (Screen::Main, _) => (self.texture.as_ref(), self.status.drawn.settled),
+            (Screen::Second, Some(second)) => (second.texture.as_ref(), second.settled),
+            (Screen::Second, None) => (None, false),
+        };
         Shown {
-            texture: self.texture.as_ref().filter(|_| self.condition == Condition::Sound).map(|(_, id)| *id),
-            settled: message.is_some() || self.status.drawn.settled,
+            texture: texture.filter(|_| self.condition == Condition::Sound).map(|(_, id)| *id),
+            settled: message.is_some() || settled,
             message,
             lost,
         }
     }
 
     /// After a failure: a new view where the device lives on, else the wish for a new program.
-    fn recover(&mut self, error: &GpuError) -> Shown {
+    fn recover(&mut self, screen: Screen, error: &GpuError) -> Shown {
         let again = self.losses.note_now();
         if again && is_loss(error) {
             self.condition = Condition::Restart;
@@ -163,6 +205,7 @@ impl Live {
             let gpu = Gpu::from_parts(&self.render.adapter, self.render.device.clone(), self.render.queue.clone());
             self.viewport = Viewport::new(&gpu);
             self.plate = Plate::new(self.viewport.passes());
+            self.close_second();
         } else {
             self.condition = Condition::GivenUp;
         }
@@ -170,7 +213,7 @@ impl Live {
         // Words of a driver come with line breaks.
         let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
         let message = if again { format!("{reason}. The picture is made anew.") } else { LossLog::GIVEN_UP.into() };
-        Shown { settled: !again, ..self.shown(Some(message), true) }
+        Shown { settled: !again, ..self.shown(screen, Some(message), true) }
     }
 
     /// The surface under a point of the picture.
@@ -180,8 +223,20 @@ impl Live {
     }
 
     /// Radiance under a point of the picture.
-    pub fn radiance(&mut self, at: Vec2) -> Option<Vec3> {
-        self.viewport.radiance(at).ok().flatten()
+    pub fn radiance(&mut self, screen: Screen, at: Vec2) -> Option<Vec3> {
+        let viewport = match screen {
+            Screen::Main => &mut self.viewport,
+            Screen::Second => self.second.as_mut()?.viewport.as_mut()?,
+        };
+        viewport.radiance(at).ok().flatten()
+    }
+
+    /// Starts to read a picture at rest.
+    pub fn read(&self, screen: Screen) -> Option<PendingPicture> {
+        match screen {
+            Screen::Main => self.viewport.read(),
+            Screen::Second => self.second.as_ref()?.viewport.as_ref()?.read(),
+        }
     }
 
     /// What there is to know about the picture.
@@ -202,6 +257,24 @@ impl Live {
     /// Makes the next frame fail.
     pub fn inject(&mut self, trial: Trial) {
         self.trial = Some(trial);
+    }
+}
+
+/// Makes egui know a picture.
+fn present(state: &RenderState, texture: &mut Known, view: Option<&wgpu::TextureView>) {
+    let Some(view) = view else { return };
+    let filter = wgpu::FilterMode::Linear;
+    let mut renderer = state.renderer.write();
+    match texture {
+        Some((known, _)) if known == view => {}
+        Some((known, id)) => {
+            renderer.update_egui_texture_from_wgpu_texture(&state.device, view, filter, *id);
+            *known = view.clone();
+        }
+        None => {
+            let id = renderer.register_native_texture(&state.device, view, filter);
+            *texture = Some((view.clone(), id));
+        }
     }
 }
 

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Drawn, Frame, Passes};
+use burnish_render::{Drawn, Frame, Passes, PendingPicture};
 use eframe::egui::TextureId;
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 
 pub use live::Live;
 pub use losses::LossLog;
@@ -21,6 +21,33 @@ pub enum Stage {
     Flat,
     /// A scene on the window's device.
     Live(Box<Live>),
+}
+
+/// Where a picture goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Screen {
+    /// The one that is always there.
+    Main,
+    /// The other side of a comparison.
+    Second,
+}
+
+/// A picture on its way from the stage to the CPU.
+pub enum Reading {
+    /// Of a flat stage.
+    Flat(UVec2),
+    /// Of the device.
+    Pending(Box<PendingPicture>),
+}
+
+impl Reading {
+    /// The picture, given out once; `None` while it is on its way. Errors are in words.
+    pub fn poll(&mut self) -> Result<Option<Picture>, String> {
+        match self {
+            Reading::Flat(size) => Ok(Some(Picture::filled(size.x, size.y, Vec4::new(0.2, 0.2, 0.2, 1.0)))),
+            Reading::Pending(pending) => pending.poll().map_err(|error| error.to_string()),
+        }
+    }
 }
 
 /// A failure to try.
@@ -67,17 +94,42 @@ pub struct Status {
 impl Stage {
     /// Draws what is due.
     pub fn draw(&mut self, scene: &Arc<Scene>, frame: &Frame) -> Shown {
+        self.draw_on(Screen::Main, scene, frame)
+    }
+
+    /// Draws what is due on a screen.
+    pub fn draw_on(&mut self, screen: Screen, scene: &Arc<Scene>, frame: &Frame) -> Shown {
         match self {
             Stage::Flat => Shown { settled: true, ..Shown::default() },
-            Stage::Live(live) => live.draw(scene, frame),
+            Stage::Live(live) => live.draw(screen, scene, frame),
         }
     }
 
     /// Shows a picture that was computed elsewhere instead; it is repainted when there is another.
     pub fn show(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+        self.show_on(Screen::Main, picture, tone, exposure_ev)
+    }
+
+    /// Shows a picture that was computed elsewhere on a screen.
+    pub fn show_on(&mut self, screen: Screen, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
         match self {
             Stage::Flat => Shown { settled: true, ..Shown::default() },
-            Stage::Live(live) => live.show(picture, tone, exposure_ev),
+            Stage::Live(live) => live.show(screen, picture, tone, exposure_ev),
+        }
+    }
+
+    /// Starts to read the live picture of a screen, which has so many pixels; `None` unless it is at rest.
+    pub fn read(&self, screen: Screen, size: UVec2) -> Option<Reading> {
+        match self {
+            Stage::Flat => Some(Reading::Flat(size)),
+            Stage::Live(live) => live.read(screen).map(|pending| Reading::Pending(Box::new(pending))),
+        }
+    }
+
+    /// Frees what the second screen takes.
+    pub fn close_second(&mut self) {
+        if let Stage::Live(live) = self {
+            live.close_second();
         }
     }
 
@@ -90,10 +142,10 @@ impl Stage {
     }
 
     /// Scene-linear radiance under a point of the live picture, 0 to 1 from its top left.
-    pub fn radiance(&mut self, at: Vec2) -> Option<Vec3> {
+    pub fn radiance(&mut self, screen: Screen, at: Vec2) -> Option<Vec3> {
         match self {
             Stage::Flat => None,
-            Stage::Live(live) => live.radiance(at),
+            Stage::Live(live) => live.radiance(screen, at),
         }
     }
 

@@ -1,12 +1,14 @@
 //! The picture, and how the mouse moves it.
 
 mod cameras;
+mod compare;
 mod navigation;
 mod overlay;
 mod readout;
 mod switch;
 
 use burnish_core::color::tone::ToneMap;
+use burnish_core::document::Side;
 use burnish_core::scene::Picked;
 use burnish_render::Frame;
 use eframe::egui::emath::GuiRounding;
@@ -15,10 +17,11 @@ use glam::UVec2;
 
 use super::{Context, DraggedPreset};
 use crate::window::commands::Command;
+use crate::window::compare::CompareView;
 use crate::window::reference::{Look, Subject};
 use crate::window::request::Request;
 use crate::window::session::Session;
-use crate::window::stage::Shown;
+use crate::window::stage::{Screen, Shown};
 use navigation::{BUTTONS, Feel, Gesture, Wheel};
 
 pub use navigation::summary;
@@ -74,7 +77,8 @@ impl ViewportPanel {
         if size.x < 1.0 || size.y < 1.0 {
             return;
         }
-        self.aspect = size.x / size.y;
+        let half = context.compare.view() == Some(CompareView::SideBySide);
+        self.aspect = if half { 0.5 } else { 1.0 } * size.x / size.y;
         if let Some(held) = ui.input(|input| input.events.iter().rev().find_map(pressed_with)) {
             self.held = held;
         }
@@ -84,18 +88,16 @@ impl ViewportPanel {
         }
 
         let moving = self.is_moving(context.session);
-        let frame = frame_of(context.session, UVec2::new(size.x as u32, size.y as u32), moving);
+        let view = context.compare.view();
+        let whole = UVec2::new(size.x as u32, size.y as u32);
+        let frame = frame_of(context.session, compare::size(view, whole), moving);
         self.click(&response, context, &frame);
         self.drop_preset(&response, context, &frame);
         // A click or a drop may have changed the scene: this frame shows it already.
-        let (shown, part) = picture(ui.ctx(), context, &frame);
-        match shown.texture {
-            Some(texture) => {
-                let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(part.x, part.y));
-                ui.painter().image(texture, rect, uv, Color32::WHITE);
-            }
-            None => _ = ui.painter().rect_filled(rect, 0.0, FLAT),
-        }
+        let shown = match view {
+            Some(_) => compare::ui(ui, &response, context, &frame),
+            None => single_ui(ui, rect, context, &frame),
+        };
         self.overlay_ui(ui, &response, context, &frame, &shown);
         self.tell(&shown, context);
         if let Some(secs) = context.reference.rests_for().filter(|_| context.reference.is_on()) {
@@ -154,7 +156,7 @@ impl ViewportPanel {
             return;
         }
         let Some(pointer) = response.interact_pointer_pos() else { return };
-        let at = overlay::relative(response.rect, pointer);
+        let at = overlay::relative(picture_rect(response, context, pointer), pointer);
         let picked = pick(context, frame, at);
         select(context.session, picked, self.held.shift);
         if response.double_clicked() && picked.is_some() {
@@ -166,7 +168,7 @@ impl ViewportPanel {
     fn drop_preset(&mut self, response: &Response, context: &mut Context<'_>, frame: &Frame) {
         let Some(dropped) = response.dnd_release_payload::<DraggedPreset>() else { return };
         let Some(pointer) = response.ctx.pointer_latest_pos() else { return };
-        let at = overlay::relative(response.rect, pointer);
+        let at = overlay::relative(picture_rect(response, context, pointer), pointer);
         let picked = pick(context, frame, at);
         let Some(material) = picked.and_then(|picked| material_of(context.session, picked)) else {
             context.requests.push(Request::Notice("There is no object there: drop the preset on one.".into()));
@@ -185,7 +187,11 @@ impl ViewportPanel {
         shown: &Shown,
     ) {
         let rect = response.rect;
-        overlay::selection_ui(ui, rect, context.session, &frame.camera, &mut self.outlines);
+        let view = context.compare.view();
+        for side in Side::ALL.into_iter().take(if view == Some(CompareView::SideBySide) { 2 } else { 1 }) {
+            let place = compare::side_rect(view, rect, side, ui.pixels_per_point());
+            overlay::selection_ui(ui, place, context.session, &frame.camera, &mut self.outlines);
+        }
         let selected = overlay::selection_text(context.session);
         if !selected.is_empty() {
             overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");
@@ -193,15 +199,16 @@ impl ViewportPanel {
         let pointer = response.hover_pos().filter(|_| shown.texture.is_some() && self.gesture.is_none());
         match pointer {
             Some(pointer) if !frame.moving => {
-                let at = overlay::relative(rect, pointer);
-                let Context { session, stage, reference, .. } = context;
-                let look = reference.shown();
-                let picture = (session.revision, look.map_or(u64::from(shown.settled), Look::version));
-                let read = || look.map_or_else(|| stage.radiance(at), |look| look.radiance(at));
-                match self.readout.update(pointer, picture, session.now_secs, read) {
+                let at = overlay::relative(picture_rect(response, context, pointer), pointer);
+                let picture = (context.session.revision, version(context, rect, pointer, shown));
+                let now_secs = context.session.now_secs;
+                match self.readout.update(pointer, picture, now_secs, || radiance(context, rect, pointer, at)) {
                     Ok(Some(radiance)) => {
                         let text = readout::text(radiance);
-                        overlay::line_ui(ui, rect, Align2::LEFT_BOTTOM, &text, READOUT_HELP);
+                        // Names of the sides stand at the bottom.
+                        let above = if view.is_some() { 30.0 } else { 0.0 };
+                        let place = rect.with_max_y(rect.bottom() - above);
+                        overlay::line_ui(ui, place, Align2::LEFT_BOTTOM, &text, READOUT_HELP);
                     }
                     Ok(None) => {}
                     Err(secs) => ui.ctx().request_repaint_after_secs(secs as f32),
@@ -229,6 +236,45 @@ impl ViewportPanel {
     }
 }
 
+/// One picture that fills the viewport.
+fn single_ui(ui: &egui::Ui, rect: Rect, context: &mut Context<'_>, frame: &Frame) -> Shown {
+    let (shown, part) = picture(ui.ctx(), context, frame);
+    match shown.texture {
+        Some(texture) => {
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(part.x, part.y));
+            ui.painter().image(texture, rect, uv, Color32::WHITE);
+        }
+        None => _ = ui.painter().rect_filled(rect, 0.0, FLAT),
+    }
+    shown
+}
+
+/// Where the picture under a point of the window is: one of two side by side.
+fn picture_rect(response: &Response, context: &Context<'_>, point: egui::Pos2) -> Rect {
+    let side = compare::side_at(context.compare, response.rect, point);
+    compare::side_rect(context.compare.view(), response.rect, side, response.ctx.pixels_per_point())
+}
+
+/// Radiance under a point of the picture.
+fn radiance(context: &mut Context<'_>, rect: Rect, point: egui::Pos2, at: glam::Vec2) -> Option<glam::Vec3> {
+    if context.compare.view().is_some() {
+        let side = compare::side_at(context.compare, rect, point);
+        return compare::radiance(context, side, at);
+    }
+    match context.reference.shown() {
+        Some(look) => look.radiance(at),
+        None => context.stage.radiance(Screen::Main, at),
+    }
+}
+
+/// Another number for another picture of the same document.
+fn version(context: &Context<'_>, rect: Rect, point: egui::Pos2, shown: &Shown) -> u64 {
+    match context.compare.view() {
+        Some(_) => compare::version(context, compare::side_at(context.compare, rect, point)),
+        None => context.reference.shown().map_or(u64::from(shown.settled), Look::version),
+    }
+}
+
 /// The reference where there is something of it and it is wanted, else the live picture; with the part of the texture
 /// that is the picture.
 fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Shown, glam::Vec2) {
@@ -253,7 +299,7 @@ fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Sh
 /// The surface under a point of the picture. The live picture may be an older one while the reference is shown.
 fn pick(context: &mut Context<'_>, frame: &Frame, at: glam::Vec2) -> Option<Picked> {
     let scene = context.session.scene();
-    match context.reference.is_on() {
+    match context.reference.is_on() || context.compare.view().is_some() {
         true => scene.pick(frame.camera.ray(at, frame.size.x as f32 / frame.size.y.max(1) as f32)),
         false => context.stage.pick(scene, frame, at),
     }

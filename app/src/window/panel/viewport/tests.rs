@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::window::compare::Compare;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::reference::Reference;
 use crate::window::request::Requests;
@@ -17,6 +18,7 @@ struct Bench {
     preferences: Preferences,
     stage: Stage,
     reference: Reference,
+    compare: Compare,
     requests: Requests,
 }
 
@@ -31,13 +33,14 @@ fn bench() -> Harness<'static, Bench> {
         preferences: Preferences::default(),
         stage: Stage::Flat,
         reference: Reference::default(),
+        compare: Compare::default(),
         requests: Requests::new(),
     };
     let show = |ui: &mut egui::Ui, bench: &mut Bench| {
         bench.session.now_secs = ui.input(|input| input.time);
-        let Bench { panel, session, preferences, stage, reference, requests } = bench;
+        let Bench { panel, session, preferences, stage, reference, compare, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
-        panel.ui(ui, &mut Context { session, preferences, stage, reference, requests, own, thumbnails });
+        panel.ui(ui, &mut Context { session, preferences, stage, reference, compare, requests, own, thumbnails });
     };
     let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);
     harness.run_steps(2);

@@ -70,7 +70,7 @@ pub struct ErrorMap {
     pub values: Vec<f32>,
     /// Mean over all pixels.
     pub mean: f64,
-    /// The value with the last colour; with a sign also its negative. 1 for FLIP, else a round number that 99 % of the
+    /// The value with the last colour; with a sign also its negative. 1 for FLIP, else a round number that 95 % of the
     /// pixels do not exceed.
     pub span: f32,
 }
@@ -119,14 +119,14 @@ fn value(metric: Metric, r: Vec3, x: Vec3, exposure: f32) -> f32 {
     }
 }
 
-/// The first of 1, 2, 5, 10 ... times a power of ten that 99 % of the values do not exceed.
+/// The first of 1, 2, 5, 10 ... times a power of ten that 95 % of the values do not exceed.
 fn span(values: &[f32]) -> f32 {
     let mut sizes: Vec<f32> = values.iter().map(|v| v.abs()).collect();
     let last = sizes.len().saturating_sub(1);
     if sizes.is_empty() {
         return 1.0;
     }
-    let (_, high, _) = sizes.select_nth_unstable_by(last * 99 / 100, f32::total_cmp);
+    let (_, high, _) = sizes.select_nth_unstable_by(last * 95 / 100, f32::total_cmp);
     // Differences below this are rounding: equal pictures are of one colour.
     let high = high.clamp(1e-4, 1e6);
     let power = 10f32.powf(high.log10().floor());

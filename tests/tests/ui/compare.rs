@@ -170,7 +170,6 @@ fn mapped() {
         let shows = bench.window.query_all_by(|node| node.label().is_some_and(|label| label.starts_with(start)));
         shows.count() > 0
     };
-    assert!(said(&bench, "FLIP: waits"));
     bench.until("there is a map", |w| w.compare().maps.shown().is_some());
     assert!(said(&bench, "FLIP: mean 0.") && said(&bench, "Against reference, "));
     let viewport = bench.window.get_by(|node| node.label().is_some_and(|label| label.starts_with("Viewport:"))).rect();

@@ -1,6 +1,9 @@
 //! How every panel, page and menu looks, to the pixel, with the viewport painted flat.
 
-use burnish::window::{Command, Menu, Pane, Request, TABLE};
+use burnish::window::{Command, CompareView, Legend, Menu, Pane, Request, TABLE};
+use burnish_core::document::Side;
+use burnish_core::error_map::Metric;
+use burnish_core::param::ParamValue;
 use burnish_tests::{Need, repository, trial};
 use egui_kittest::SnapshotOptions;
 use libtest_mimic::Trial;
@@ -16,6 +19,8 @@ pub fn trials() -> Vec<Trial> {
         trial("the_window_looks_as_accepted_in_both_themes", gpu, whole_window),
         trial("start_page_palette_and_shortcut_page_look_as_accepted", gpu, pages),
         trial("the_import_preview_looks_as_accepted_in_both_themes", gpu, import_preview),
+        trial("a_wipe_with_its_list_looks_as_accepted_in_both_themes", gpu, wipe_with_list),
+        trial("legends_of_error_maps_look_as_accepted", gpu, legends),
         trial("every_menu_shows_its_commands", &[], menus),
     ]
 }
@@ -99,6 +104,52 @@ fn import_preview() {
         bench.click("Cancel");
     }
     judge(&mut bench);
+}
+
+/// A differs from B in lines of many kinds.
+fn wipe_with_list() {
+    let setup = Setup { name: "wipe", scene: Some(SCENE), size: [1280.0, 800.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    let session = bench.workbench().session_mut();
+    session.edit("Store as A", "", |document| document.store_side(Side::A));
+    session.edit("Edits", "", |document| {
+        let metal = burnish_core::material::preset::find("Au").expect("it is there");
+        document.assign_preset(0, &metal, Default::default());
+        document.set_value(0, "roughness", ParamValue::Number(0.8)).expect("it is a factor");
+        document.set_value(1, "base-color", ParamValue::Color([0.5, 0.25, 0.125])).expect("it is a factor");
+        document.set_lighting("samples", ParamValue::Integer(64)).expect("it is a setting");
+        document.environment.rotation_deg = 30.0;
+        document.view.exposure_ev = 0.5;
+    });
+    bench.workbench().ask(Request::Command(Command::Compare(CompareView::Wipe)));
+    bench.workbench().show_panel(Pane::Compare);
+    for (dark, name) in [(true, "wipe_dark"), (false, "wipe_light")] {
+        bench.workbench().preferences_mut().dark = Some(dark);
+        look(&mut bench, name);
+    }
+    bench.workbench().ask(Request::Command(Command::Compare(CompareView::SideBySide)));
+    look(&mut bench, "side_by_side");
+    judge(&mut bench);
+}
+
+fn legends() {
+    let show = |ui: &mut eframe::egui::Ui| {
+        for metric in Metric::ALL {
+            let span = if metric == Metric::Flip { 1.0 } else { 0.02 };
+            let text = "mean 0.0123, against 512 samples".into();
+            let place = ui.allocate_exact_size(Legend::SIZE, eframe::egui::Sense::hover()).0;
+            Legend { metric, span: Some(span), text }.ui(ui, place);
+        }
+        let place = ui.allocate_exact_size(Legend::SIZE, eframe::egui::Sense::hover()).0;
+        Legend { metric: Metric::Flip, span: None, text: "measuring".into() }.ui(ui, place);
+    };
+    let mut harness = egui_kittest::Harness::builder().with_size([300.0, 340.0]).wgpu().build_ui(show);
+    harness.run_steps(3);
+    let folder = repository().join("tests/tests/ui/snapshots");
+    let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);
+    harness.snapshot_options("error_map_legends", &options);
+    let faults: Vec<String> = harness.take_snapshot_results().into_inner().iter().map(ToString::to_string).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 /// Also that every entry has a menu: what is in no menu is found by nobody.

@@ -238,7 +238,9 @@ fn words(spec: &ParamSpec, value: ParamValue) -> String {
     match value {
         ParamValue::Number(number) => format!("{}{unit}", digits(number)),
         ParamValue::Integer(number) => format!("{number}{unit}"),
-        ParamValue::Color([r, g, b]) => format!("{} {} {}", digits(r), digits(g), digits(b)),
+        ParamValue::Color([a, b, c]) | ParamValue::Vector([a, b, c]) => {
+            format!("{} {} {}", digits(a), digits(b), digits(c))
+        }
         ParamValue::Toggle(on) => if on { "on" } else { "off" }.into(),
         ParamValue::Choice(_) => spec.json(value).as_str().map(Into::into).unwrap_or_default(),
     }

@@ -2,7 +2,7 @@
 
 use burnish::window::{Command, CompareView, Legend, Menu, Pane, Request, TABLE};
 use burnish_core::document::Side;
-use burnish_core::error_map::Metric;
+use burnish_core::measure::error_map::Metric;
 use burnish_core::param::ParamValue;
 use burnish_tests::{Need, repository, trial};
 use egui_kittest::SnapshotOptions;

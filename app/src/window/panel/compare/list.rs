@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::document::{Difference, Document, Side, differences};
-use eframe::egui::{self, Align, Layout, vec2};
+use eframe::egui::{self, Align, Layout, Sense, UiBuilder, vec2};
 
 use super::Context;
 use crate::window::compare::SideScene;
@@ -93,10 +93,9 @@ fn text_ui(ui: &mut egui::Ui, width: f32, text: &str, hover: &str, align: Align)
     let size = vec2(width, ui.spacing().interact_size.y);
     let layout =
         if align == Align::Max { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
-    ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_min_width(width);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(hover);
-    });
+    let place = ui.allocate_exact_size(size, Sense::hover()).0;
+    let mut cell = ui.new_child(UiBuilder::new().max_rect(place).layout(layout));
+    cell.add(egui::Label::new(text).truncate()).on_hover_text(hover);
 }
 
 #[cfg(test)]

@@ -141,11 +141,11 @@ fn legends() {
         });
         let waiting = Legend { metric: Metric::Flip, span: None, text: "measuring".into() };
         for (row, legend) in legends.into_iter().chain([waiting]).enumerate() {
-            let corner = pos2(10.0, 4.0 + 66.0 * row as f32);
+            let corner = pos2(16.0, 14.0 + 66.0 * row as f32);
             legend.ui(ui, Rect::from_min_size(corner, Legend::SIZE));
         }
     };
-    let mut harness = egui_kittest::Harness::builder().with_size([300.0, 340.0]).wgpu().build_ui(show);
+    let mut harness = egui_kittest::Harness::builder().with_size([316.0, 360.0]).wgpu().build_ui(show);
     harness.run_steps(3);
     let folder = repository().join("tests/tests/ui/snapshots");
     let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);

@@ -5,6 +5,7 @@ use burnish_core::document::Side;
 use burnish_core::measure::error_map::Metric;
 use burnish_core::param::ParamValue;
 use burnish_tests::{Need, repository, trial};
+use eframe::egui::{Rect, pos2};
 use egui_kittest::SnapshotOptions;
 use libtest_mimic::Trial;
 
@@ -134,16 +135,17 @@ fn wipe_with_list() {
 
 fn legends() {
     let show = |ui: &mut eframe::egui::Ui| {
-        for metric in Metric::ALL {
+        let legends = Metric::ALL.map(|metric| {
             let span = if metric == Metric::Flip { 1.0 } else { 0.02 };
-            let text = "mean 0.0123, against 512 samples".into();
-            let place = ui.allocate_exact_size(Legend::SIZE, eframe::egui::Sense::hover()).0;
-            Legend { metric, span: Some(span), text }.ui(ui, place);
+            Legend { metric, span: Some(span), text: "mean 0.0123, against 512 samples".into() }
+        });
+        let waiting = Legend { metric: Metric::Flip, span: None, text: "measuring".into() };
+        for (row, legend) in legends.into_iter().chain([waiting]).enumerate() {
+            let corner = pos2(16.0, 14.0 + 66.0 * row as f32);
+            legend.ui(ui, Rect::from_min_size(corner, Legend::SIZE));
         }
-        let place = ui.allocate_exact_size(Legend::SIZE, eframe::egui::Sense::hover()).0;
-        Legend { metric: Metric::Flip, span: None, text: "measuring".into() }.ui(ui, place);
     };
-    let mut harness = egui_kittest::Harness::builder().with_size([300.0, 340.0]).wgpu().build_ui(show);
+    let mut harness = egui_kittest::Harness::builder().with_size([316.0, 360.0]).wgpu().build_ui(show);
     harness.run_steps(3);
     let folder = repository().join("tests/tests/ui/snapshots");
     let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::document::{Difference, Document, Side, differences};
-use eframe::egui::{self, Align, Layout, vec2};
+use eframe::egui::{self, Align, Layout, Sense, UiBuilder, vec2};
 
 use super::Context;
 use crate::window::compare::SideScene;
@@ -31,13 +31,15 @@ impl DifferenceList {
         }
         let mut copied = None;
         let mut group = "";
+        // Asked once: a row that is a fraction of a point too wide would widen the next.
+        let whole = ui.available_width();
         for (index, line) in self.lines.iter().enumerate() {
             if group != line.group {
                 group = &line.group;
                 ui.add_space(2.0);
                 ui.strong(group);
             }
-            ui.push_id(index, |ui| copied = line_ui(ui, line).map(|to| (line.clone(), to)).or(copied.take()));
+            ui.push_id(index, |ui| copied = line_ui(ui, line, whole).map(|to| (line.clone(), to)).or(copied.take()));
         }
         if let Some((line, to)) = copied {
             copy(context.session, &line, to, &sides);
@@ -65,15 +67,15 @@ fn copy(session: &mut Session, line: &Difference, to: Side, sides: &[SideScene; 
 }
 
 /// Name, value of A, buttons, value of B. Returns the side that takes over the value of the other.
-fn line_ui(ui: &mut egui::Ui, line: &Difference) -> Option<Side> {
+fn line_ui(ui: &mut egui::Ui, line: &Difference, whole: f32) -> Option<Side> {
     let Difference { label, values, group, .. } = line;
     let mut to = None;
     ui.horizontal(|ui| {
         let gap = ui.spacing().item_spacing.x;
-        let width = (ui.available_width() - 2.0 * ARROW - 4.0 * gap).max(60.0);
+        let width = (whole - 2.0 * ARROW - 4.0 * gap).max(60.0);
         let hover = format!("{group}, {label}\nA: {}\nB: {}", values[0], values[1]);
-        text_ui(ui, 0.36 * width, label, &hover, Align::Min);
-        text_ui(ui, 0.32 * width, &values[0], &hover, Align::Max);
+        text_ui(ui, (0.36 * width).floor(), label, &hover, Align::Min);
+        text_ui(ui, (0.32 * width).floor(), &values[0], &hover, Align::Max);
         for (side, sign) in [(Side::B, "⏵"), (Side::A, "⏴")] {
             let height = ui.spacing().interact_size.y;
             let name = format!("Copy {label} to {}", side.letter());
@@ -83,7 +85,7 @@ fn line_ui(ui: &mut egui::Ui, line: &Difference) -> Option<Side> {
                 to = Some(side);
             }
         }
-        text_ui(ui, 0.32 * width, &values[1], &hover, Align::Min);
+        text_ui(ui, (0.32 * width).floor(), &values[1], &hover, Align::Min);
     });
     to
 }
@@ -93,10 +95,9 @@ fn text_ui(ui: &mut egui::Ui, width: f32, text: &str, hover: &str, align: Align)
     let size = vec2(width, ui.spacing().interact_size.y);
     let layout =
         if align == Align::Max { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
-    ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_min_width(width);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(hover);
-    });
+    let place = ui.allocate_exact_size(size, Sense::hover()).0;
+    let mut cell = ui.new_child(UiBuilder::new().max_rect(place).layout(layout));
+    cell.add(egui::Label::new(text).truncate()).on_hover_text(hover);
 }
 
 #[cfg(test)]

@@ -43,11 +43,11 @@ fn rectangle(builder: &mut Builder, [a, b]: [Vec3; 2], normal: Vec3, half: Vec3)
     let right = up.cross(normal);
     let size = 2.0 * Vec2::new(half.dot(right.abs()), half.dot(up.abs()));
     // Corners to the left and right, above and below.
-    let (left, across) = (a.dot(right).min(b.dot(right)), (b - a).dot(right).abs());
-    let (top, down) = (a.dot(up).max(b.dot(up)), (b - a).dot(up).abs());
+    let (left, end) = (a.dot(right).min(b.dot(right)), a.dot(right).max(b.dot(right)));
+    let (top, bottom) = (a.dot(up).max(b.dot(up)), a.dot(up).min(b.dot(up)));
     builder.grid(1, 1, |i, j| {
-        let pick = |start: f32, along: f32, end: bool| if end { start + along } else { start };
-        let (x, y) = (pick(left, across, i == 1), pick(top, -down, j == 1));
+        // The numbers as they are, without a sum that rounds: neighbours share their corners.
+        let (x, y) = (if i == 0 { left } else { end }, if j == 0 { top } else { bottom });
         let uv_metres = Vec2::new(x, -y) + 0.5 * size;
         Vertex {
             position: right * x + up * y + normal * a.dot(normal),

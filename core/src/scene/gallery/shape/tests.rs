@@ -23,7 +23,7 @@ fn bodies() -> Vec<(Mesh, f32)> {
         (block(size, edge, 12), rounded),
         (ring_segment(), ring_segment_volume()),
         // Twisting keeps volumes; so does bending, with the length of the curve, where the section's middle is on it.
-        (twisted(block(size, edge, 12), 0.8), rounded),
+        (twisted(sphere(0.2, 96), 0.8), 4.0 / 3.0 * PI * 0.2_f32.powi(3)),
         (pierced(Vec3::new(0.5, 0.4, 0.1), Vec2::new(0.05, -0.02), Vec2::new(0.2, 0.1)), 0.1 * (0.2 - 0.02)),
         (bent(transformed(cylinder(0.05, 0.6, 0.0, 96), &Affine3A::from_translation(0.3 * Vec3::Y)), 0.6, &LINE), tube),
     ]

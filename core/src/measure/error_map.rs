@@ -129,8 +129,10 @@ fn span(values: &[f32]) -> f32 {
     let (_, high, _) = sizes.select_nth_unstable_by(last * 95 / 100, f32::total_cmp);
     // Differences below this are rounding: equal pictures are of one colour.
     let high = high.clamp(1e-4, 1e6);
-    let power = 10f32.powf(high.log10().floor());
-    [1.0, 2.0, 5.0].into_iter().map(|step| step * power).find(|v| *v >= high * 0.9999).unwrap_or(10.0 * power)
+    // In f64, so that it is the f32 nearest to the round number.
+    let power = 10f64.powf(f64::from(high.log10().floor()));
+    let steps = [1.0, 2.0, 5.0].map(|step| (step * power) as f32);
+    steps.into_iter().find(|v| *v >= high * 0.9999).unwrap_or((10.0 * power) as f32)
 }
 
 /// Where the diverging map begins, passes zero and ends: Okabe and Ito's blue and vermilion, told apart by people of any

@@ -93,7 +93,11 @@ fn pairs() -> Vec<Pair> {
     let noise = noisy(7, 97, 61, 0.2);
     let slope = Picture::from_fn(80, 50, |x, y| Vec4::new(0.01 * x as f32, 0.02 * y as f32, 0.4, 1.0));
     let stripes = |shift: u32| {
-        Picture::from_fn(90, 40, move |x, _| if ((x + shift) / 6).is_multiple_of(2) { Vec4::ONE } else { Vec4::splat(0.03) })
+        Picture::from_fn(
+            90,
+            40,
+            move |x, _| if ((x + shift) / 6).is_multiple_of(2) { Vec4::ONE } else { Vec4::splat(0.03) },
+        )
     };
     let scaled = |picture: &Picture, by: Vec3| Picture {
         texels: picture.texels.iter().map(|t| (t.truncate() * by).extend(1.0)).collect(),

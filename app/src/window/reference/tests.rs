@@ -109,6 +109,8 @@ fn input_lets_it_rest_for_a_while() {
     assert!(start.elapsed() + Duration::from_millis(50) > QUIET, "{:?}", start.elapsed());
     assert_eq!(reference.rests_for(), None);
     reference.switch(false);
+    // A frame that does not look at it.
+    reference.end_frame();
     reference.note_input();
     assert_eq!(reference.rests_for(), None, "there is nothing to let rest");
 }

@@ -5,15 +5,15 @@ use std::time::Duration;
 use glam::UVec2;
 
 /// Milliseconds of a frame while something moves. The window takes about 40 more, and an input waits for half of a frame
-/// before its own: 100 in all.
-const MOVING_MS: f64 = 28.0;
+/// before its own: less than 100 in all.
+const MOVING_MS: f64 = 24.0;
 /// Milliseconds of refinement between two looks at the input.
 const STILL_MS: f64 = 45.0;
 /// Time for the cubes of an environment between two looks at the input: on a software rasteriser, where nothing else is
 /// drawn meanwhile, and on others, beside the frames.
 const PREPARING: [Duration; 2] = [Duration::from_millis(60), Duration::from_millis(6)];
 /// Shares of the window's width and height that may be drawn.
-const SCALES: [f32; 9] = [1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 0.32, 0.25, 0.2];
+const SCALES: [f32; 10] = [1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16];
 /// Fewest rows that are lit at a time.
 const ROWS_MIN: u32 = 16;
 /// Weight of a new measurement: one hiccup of the machine does not count in full.
@@ -138,10 +138,10 @@ mod tests {
         for pixel in [1e-4, 3e-4, 8e-4] {
             let size = settled(10.0, pixel);
             assert!(10.0 + pixel * pixels(size) <= MOVING_MS, "{size} at {pixel} ms a pixel");
-            assert!(size.x < WINDOW.x && size.x >= 160, "{size} at {pixel} ms a pixel");
+            assert!(size.x < WINDOW.x && size.x >= 127, "{size} at {pixel} ms a pixel");
         }
         // Vertices alone take longer: as few pixels as there may be.
-        assert_eq!(settled(300.0, 1e-4), UVec2::new(160, 120));
+        assert_eq!(settled(300.0, 1e-4), UVec2::new(127, 96));
     }
 
     #[test]

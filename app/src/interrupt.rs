@@ -3,6 +3,7 @@
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -28,4 +29,21 @@ pub(crate) fn watch() -> io::Result<Arc<AtomicBool>> {
         }
     }
     Ok(raised)
+}
+
+/// How long a signal waits until it is heard.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Does `work` on another thread and calls `cancel` when a signal comes meanwhile.
+pub(crate) fn cancelling<T: Send>(raised: &AtomicBool, cancel: impl Fn(), work: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let work = scope.spawn(work);
+        while !work.is_finished() {
+            if raised.load(Ordering::Relaxed) {
+                cancel();
+            }
+            std::thread::sleep(POLL);
+        }
+        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use burnish_core::document::{self, Curves, Document, Missing, Sources, resolve};
 use burnish_core::import::{self, ImportOptions};
-use burnish_core::scene::{Environment, Scene, gallery};
+use burnish_core::scene::{Camera, Environment, Scene, gallery};
+use glam::UVec2;
 
 use crate::failure::{Exit, Failure};
 
@@ -80,6 +81,26 @@ impl Opened {
         let line = |missing: &Missing| format!("{}: {}; relink it in the window", missing.path, missing.reason);
         Err(Failure { exit: Exit::Input, messages: self.missing.iter().map(line).collect() })
     }
+
+    /// From where it is looked at when nothing else is said: the document's view, the first camera of a gallery scene,
+    /// all of a model in a picture of that shape.
+    pub fn camera(&self, size: UVec2) -> Camera {
+        match (&self.document, self.scene.cameras.first()) {
+            (Some(document), _) => document.view.camera.camera(),
+            (None, Some(camera)) if self.from_gallery => camera.clone(),
+            _ => Camera::frame(self.scene.bounds(), size.x as f32 / size.y as f32),
+        }
+    }
+
+    /// Puts the environment of an option in, else a studio where the scene has none.
+    pub fn light(&mut self, environment: Option<&EnvironmentFile>) {
+        if let Some(EnvironmentFile { environment, notices }) = environment {
+            self.scene.environment = Some(environment.clone());
+            self.notices.extend(notices.iter().cloned());
+        } else if self.scene.environment.is_none() {
+            self.scene.environment = Some(Arc::new(gallery::studio()));
+        }
+    }
 }
 
 /// The part after `gallery:`.
@@ -87,8 +108,17 @@ pub fn gallery_name(scene: &OsStr) -> Option<&str> {
     scene.to_str()?.strip_prefix("gallery:")
 }
 
-/// Reads the file of `--env`, with notices.
-pub fn environment(path: &Path) -> Result<(Arc<Environment>, Vec<String>), Failure> {
+/// The file of `--env`.
+pub struct EnvironmentFile {
+    pub environment: Arc<Environment>,
+    notices: Vec<String>,
+}
+
+/// Reads it.
+pub fn environment(path: &Path) -> Result<EnvironmentFile, Failure> {
     let (environment, notices) = import::load_environment(path).map_err(|e| Failure::input(path, e))?;
-    Ok((Arc::new(environment), notices.iter().map(ToString::to_string).collect()))
+    Ok(EnvironmentFile {
+        environment: Arc::new(environment),
+        notices: notices.iter().map(ToString::to_string).collect(),
+    })
 }

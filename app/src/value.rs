@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use burnish_core::file::PictureFormat;
+use burnish_core::lighting::{self, Method};
 use glam::{UVec2, Vec3};
 
 /// Largest side of a picture: what every adapter grants a texture.
@@ -69,6 +70,21 @@ impl Pick {
             Pick::Name(name) => format!("no {what} `{name}`; {known}"),
         })
     }
+}
+
+/// A lighting method by its id.
+#[derive(Clone, Copy)]
+pub struct MethodChoice(pub &'static dyn Method);
+
+impl MethodChoice {
+    pub fn id(self) -> &'static str {
+        self.0.info().id.0
+    }
+}
+
+/// Reads a [`MethodChoice`].
+pub fn method(id: &str) -> Result<MethodChoice, String> {
+    lighting::method::find(&lighting::methods(), id).map(MethodChoice).map_err(|e| e.to_string())
 }
 
 /// `PRESET[:slot]` of `--metal`.

@@ -7,12 +7,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use burnish_core::file::write_atomic;
-use burnish_core::lighting::METHODS;
+use burnish_core::lighting;
 use burnish_core::lighting::method::{self, Method, MethodId, Sweep};
-use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, PathTimer, Record, Rig, Shot, Truth};
+use burnish_core::measure::bench::{
+    self, BenchError, Cache, Candidate, PathTimer, PointTimer, Record, Rig, Shot, Truth,
+};
 use burnish_core::param::Settings;
 use burnish_core::reference::{self, Control};
-use burnish_core::scene::{Camera, Scene, gallery};
+use burnish_core::scene::{Scene, gallery};
 use burnish_render::{Gpu, Passes};
 use glam::UVec2;
 
@@ -95,7 +97,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
 fn methods(names: &[String]) -> Result<Vec<&'static dyn Method>, Failure> {
     let mut chosen: Vec<&'static dyn Method> = Vec::new();
     for name in names {
-        let found = method::find(METHODS, name).map_err(|e| Failure::usage(format!("--methods: {e}")))?;
+        let found = method::find(&lighting::methods(), name).map_err(|e| Failure::usage(format!("--methods: {e}")))?;
         if !chosen.iter().any(|known| known.info().id == found.info().id) {
             chosen.push(found);
         }
@@ -125,13 +127,10 @@ fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
     let environment = args.env.as_deref().map(source::environment).transpose()?;
     let mut shots = Vec::new();
     for name in &names {
-        let source::Opened { mut scene, mut notices, from_gallery, document, .. } = source::open(name)?.complete()?;
-        if let Some((environment, more)) = &environment {
-            scene.environment = Some(environment.clone());
-            notices.extend(more.iter().cloned());
-        } else if scene.environment.is_none() {
-            scene.environment = Some(Arc::new(gallery::studio()));
-        }
+        let mut opened = source::open(name)?.complete()?;
+        opened.light(environment.as_ref());
+        let camera = opened.camera(args.size);
+        let source::Opened { mut scene, notices, document, .. } = opened;
         let name = name.to_string_lossy().to_string();
         for notice in notices {
             writeln!(err, "burnish: notice: {}: {}", printable(&name), printable(&notice))?;
@@ -139,15 +138,15 @@ fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
         if !args.subject.is_empty() {
             scene.subject = subject(&scene, &args.subject)?;
         }
-        let camera = match (&document, scene.cameras.first()) {
-            (Some(document), _) => document.view.camera.camera(),
-            (None, Some(camera)) if from_gallery => camera.clone(),
-            _ => Camera::frame(scene.bounds(), args.size.x as f32 / args.size.y as f32),
-        };
         let exposure_ev = document.as_ref().map_or(0.0, |document| document.view.exposure_ev as f32);
         let metals = document.iter().flat_map(|document| &document.presets);
         let metals = metals.map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
-        shots.push(Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals });
+        let shot = Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals };
+        for id in shot.unknown_metals() {
+            let (name, id) = (printable(&shot.name), printable(id));
+            writeln!(err, "burnish: notice: {name}: the n and k of `{id}` are not known; its form is not changed")?;
+        }
+        shots.push(shot);
     }
     Ok(shots)
 }
@@ -179,6 +178,11 @@ fn cache(args: &Args) -> Result<Cache, Failure> {
 fn rig<'a>(gpu: &Gpu, passes: &Arc<Passes>, control: &Control) -> Result<Rig<'a>, Failure> {
     let mut timers = burnish_render::bench::timers(passes);
     timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
+    for method in lighting::methods() {
+        if let Some(timer) = PointTimer::new(method, control) {
+            timers.push((method.info().id, Box::new(timer)));
+        }
+    }
     let calibrate = burnish_render::bench::calibration(passes).map_err(Failure::resources)?;
     Ok(Rig { timers, calibrate: Box::new(calibrate), machine: gpu.report().name.clone() })
 }
@@ -208,16 +212,8 @@ fn measure(
     };
     progress(&format!("{}: tracing the reference", shot.name))?;
     let settings = Settings::new(reference::PARAMS);
-    let truth = std::thread::scope(|scope| {
-        let tracing = scope.spawn(|| Truth::trace(shot, &settings, args.samples, cache, control));
-        while !tracing.is_finished() {
-            if stop.load(Ordering::Relaxed) {
-                control.cancel();
-            }
-            std::thread::sleep(std::time::Duration::from_millis(20));
-        }
-        tracing.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })?;
+    let trace = || Truth::trace(shot, &settings, args.samples, cache, control);
+    let truth = interrupt::cancelling(stop, || control.cancel(), trace)?;
     bench::measure(shot, &truth, candidates, rig, cache, &mut progress)
 }
 
@@ -234,7 +230,7 @@ fn failure(scene: &str, error: &BenchError) -> Failure {
 fn write(args: &Args, records: &[Record], out: &mut dyn Write) -> Result<(), Failure> {
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
     let files = [(&args.out, drawing as fn(&[Record]) -> String), (&args.csv, bench::csv as fn(&[Record]) -> String)];
-    let html = |records: &[Record]| page(records, METHODS, &format!("burnish {command}"));
+    let html = |records: &[Record]| page(records, &lighting::methods(), &format!("burnish {command}"));
     let texts = files.iter().filter_map(|(file, text)| file.as_ref().map(|file| (file, text(records))));
     for (file, text) in texts.chain(args.html.as_ref().map(|file| (file, html(records)))) {
         write_atomic(file, text.as_bytes()).map_err(Failure::resources)?;

@@ -63,7 +63,7 @@ pub fn run(args: Args, out: &mut dyn Write) -> Result<Exit, Failure> {
         return Err(Failure::usage(format!("{text}; take a smaller --ball or fewer metals")));
     }
     let environment = match &args.env {
-        Some(file) => source::environment(file)?.0,
+        Some(file) => source::environment(file)?.environment,
         None if args.even => Arc::new(Environment::new("even", 4, 2, vec![Vec3::ONE; 8])),
         None => Arc::new(gallery::studio()),
     };

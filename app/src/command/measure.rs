@@ -110,7 +110,7 @@ fn measure(
 ) -> Result<Vec<Row>, Failure> {
     let mut environments = Vec::new();
     for file in &maps.env {
-        environments.push(source::environment(file)?.0);
+        environments.push(source::environment(file)?.environment);
     }
     if environments.is_empty() {
         environments.push(Arc::new(gallery::studio()));

@@ -11,6 +11,7 @@ mod fresnel_times;
 mod gallery;
 mod info;
 mod measure;
+mod methods;
 pub mod open;
 mod presets;
 mod render;
@@ -47,6 +48,8 @@ pub enum Command {
     Compare(compare::Args),
     /// Chart what lighting methods cost against how wrong they are
     Chart(chart::Args),
+    /// List the lighting methods with what they cover and their settings
+    Methods(methods::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
     Measure(measure::Args),
     /// Render balls of metals beside one another, one row for each Fresnel form
@@ -70,6 +73,7 @@ impl Command {
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Chart(args) => chart::run(args, out, err),
+            Command::Methods(args) => methods::run(args, out),
             Command::Measure(args) => measure::run(args, out),
             Command::FresnelBalls(args) => fresnel_balls::run(args, out),
             Command::FresnelTimes(args) => fresnel_times::run(args, out),

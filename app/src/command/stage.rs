@@ -7,7 +7,7 @@ use std::sync::Arc;
 use burnish_core::document::{Curves, Document};
 use burnish_core::material::preset::{self, FormChoice, Preset, PresetError};
 use burnish_core::material::{Material, Reflectance, finish};
-use burnish_core::scene::{Camera, Scene, gallery};
+use burnish_core::scene::{Camera, Scene};
 use glam::UVec2;
 
 use crate::failure::Failure;
@@ -90,25 +90,21 @@ impl StageArgs {
     }
 
     /// Makes the changes that the options ask for, metals in the form `choice`.
-    pub fn set(&self, opened: Opened, choice: FormChoice, forms: Forms) -> Result<Staged, Failure> {
-        let Opened { mut scene, mut notices, from_gallery, document, .. } = opened;
+    pub fn set(&self, mut opened: Opened, choice: FormChoice, forms: Forms) -> Result<Staged, Failure> {
+        let environment = self.env.as_deref().map(source::environment).transpose()?;
+        opened.light(environment.as_ref());
+        // Of the scene as it came: materials do not move it.
+        let usual = opened.camera(self.size);
+        let Opened { mut scene, mut notices, document, .. } = opened;
         if let (Some(document), Forms::OfAll) = (&document, forms) {
-            let all = document.in_form(&Arc::new(scene), choice, &mut Curves::default());
-            scene = Arc::unwrap_or_clone(all);
+            scene = Arc::unwrap_or_clone(document.in_form(&scene, choice, &mut Curves::default()));
         }
         if document.is_none() {
             set_form(&mut scene, choice);
         }
-        if let Some(file) = &self.env {
-            let (environment, more) = source::environment(file)?;
-            scene.environment = Some(environment);
-            notices.extend(more);
-        } else if scene.environment.is_none() {
-            scene.environment = Some(Arc::new(gallery::studio()));
-        }
         let mut metals = BTreeMap::new();
         notices.extend(self.set_materials(&mut scene, choice, &mut metals)?);
-        let camera = self.camera(&scene, from_gallery, document.as_ref())?;
+        let camera = self.camera(&scene, document.as_ref())?.unwrap_or(usual);
         Ok(Staged { scene, camera, size: self.size, notices, document, metals })
     }
 
@@ -152,24 +148,22 @@ impl StageArgs {
         Ok(notices)
     }
 
-    fn camera(&self, scene: &Scene, from_gallery: bool, document: Option<&Document>) -> Result<Camera, Failure> {
-        match &self.camera {
-            Some(CameraChoice::LookAt { eye, target, yfov }) => Ok(Camera::look_at("look at", *eye, *target, *yfov)),
-            Some(CameraChoice::Of(pick)) => {
-                // Those that were saved in the document come first.
-                let saved = document.iter().flat_map(|document| &document.cameras).map(|entry| entry.camera());
-                let cameras: Vec<Camera> = saved.chain(scene.cameras.iter().cloned()).collect();
-                let found = pick
-                    .among("camera", cameras.iter().map(|c| c.name.as_str()))
-                    .map_err(|e| Failure::usage(format!("--camera: {e}; or give ex,ey,ez,tx,ty,tz,fov")))?;
-                Ok(cameras[found[0]].clone())
+    /// That of `--camera`.
+    fn camera(&self, scene: &Scene, document: Option<&Document>) -> Result<Option<Camera>, Failure> {
+        let pick = match &self.camera {
+            None => return Ok(None),
+            Some(CameraChoice::LookAt { eye, target, yfov }) => {
+                return Ok(Some(Camera::look_at("look at", *eye, *target, *yfov)));
             }
-            None => Ok(match (document, scene.cameras.first()) {
-                (Some(document), _) => document.view.camera.camera(),
-                (None, Some(camera)) if from_gallery => camera.clone(),
-                _ => Camera::frame(scene.bounds(), self.size.x as f32 / self.size.y as f32),
-            }),
-        }
+            Some(CameraChoice::Of(pick)) => pick,
+        };
+        // Those that were saved in the document come first.
+        let saved = document.iter().flat_map(|document| &document.cameras).map(|entry| entry.camera());
+        let cameras: Vec<Camera> = saved.chain(scene.cameras.iter().cloned()).collect();
+        let found = pick
+            .among("camera", cameras.iter().map(|c| c.name.as_str()))
+            .map_err(|e| Failure::usage(format!("--camera: {e}; or give ex,ey,ez,tx,ty,tz,fov")))?;
+        Ok(Some(cameras[found[0]].clone()))
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::{Assigned, Assignment, Document, MaterialEntry, Side, Snapshot};
-use crate::lighting::classical;
+use crate::lighting;
 use crate::material::{Material, params};
 use crate::param::{self, ParamSpec, ParamValue};
 use crate::reference;
@@ -124,7 +124,7 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     let lighting = &document.lighting;
     all.insert(Place::Method, text(&lighting.method));
     for (key, value) in &lighting.settings {
-        let words = words_of(classical::PARAMS, key, value);
+        let words = words_of(lighting.live_method().info().params, key, value);
         all.insert(Place::Lighting(key.clone()), (Some(value.clone()), words));
     }
     for (key, value) in &lighting.reference {
@@ -187,7 +187,7 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Form) => "as the scene".into(),
         Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
-        Place::Lighting(key) => default(classical::PARAMS, key).unwrap_or_default(),
+        Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
         Place::Rotation | Place::Strength | Place::Method | Place::Camera | Place::Exposure | Place::Tone => {
             String::new()
@@ -220,12 +220,18 @@ fn label(place: &Place) -> String {
         Place::Rotation => "Rotation".into(),
         Place::Strength => "Strength".into(),
         Place::Method => "Method".into(),
-        Place::Lighting(key) => of(classical::PARAMS, key),
+        Place::Lighting(key) => of(setting_of_any_method(key), key),
         Place::Reference(key) => of(reference::PARAMS, key),
         Place::Camera => "Camera".into(),
         Place::Exposure => "Exposure".into(),
         Place::Tone => "Tone map".into(),
     }
+}
+
+/// The settings of the first method that has one of this key.
+fn setting_of_any_method(key: &str) -> &'static [ParamSpec] {
+    let of = lighting::methods().into_iter().map(|method| method.info().params);
+    of.into_iter().find(|specs| param::find(specs, key).is_ok()).unwrap_or_default()
 }
 
 fn words_of(specs: &[ParamSpec], key: &str, value: &Value) -> String {
@@ -298,7 +304,7 @@ impl Document {
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,
-            Place::Method => self.lighting.method.clone_from(&from.lighting.method),
+            Place::Method => self.set_method(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
             Place::Reference(key) => setting(&mut self.lighting.reference, &from.lighting.reference, key),
             Place::Camera => self.view.camera = from.view.camera.clone(),

@@ -9,7 +9,6 @@ use super::{
     Assignment, CameraEntry, Document, MaterialEntry, ObjectEntry, PresetUse, SHARED_SETTINGS, TextureChoice,
     material_keys, role_key,
 };
-use crate::lighting::classical;
 use crate::material::finish::Finish;
 use crate::material::preset::{self, Preset};
 use crate::material::saved::SavedMaterial;
@@ -333,9 +332,23 @@ impl Document {
         }
     }
 
+    /// Chooses a live method; the settings of the former wait until it is chosen again.
+    pub fn set_method(&mut self, id: &str) {
+        let lighting = &mut self.lighting;
+        if lighting.method == id {
+            return;
+        }
+        let settings = lighting.other_settings.remove(id).unwrap_or_default();
+        let former = std::mem::replace(&mut lighting.settings, settings);
+        let method = std::mem::replace(&mut lighting.method, id.into());
+        if !former.is_empty() {
+            lighting.other_settings.insert(method, former);
+        }
+    }
+
     /// Sets a setting of the lighting method; the default is not stored.
     pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
-        store(classical::PARAMS, &mut self.lighting.settings, key, value)
+        store(self.lighting.live_method().info().params, &mut self.lighting.settings, key, value)
     }
 
     /// Sets a setting of the reference, see [`Document::set_lighting`]; a shared one is set for the method as well.

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::lighting::classical;
+use crate::lighting::{self, Method, classical};
 use crate::material::TextureRole;
 use crate::material::preset::{FormChoice, Preset};
 use crate::param::{self, ParamSpec, ParamValue, Settings};
@@ -213,6 +213,9 @@ pub struct LightingEntry {
     /// Changed settings by key.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub settings: Map<String, Value>,
+    /// Changed settings of the methods that were chosen before, by id.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub other_settings: BTreeMap<String, Map<String, Value>>,
     /// Changed settings of the [reference](mod@reference) by key, without those that it shares with the method.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub reference: Map<String, Value>,
@@ -273,7 +276,13 @@ impl Default for EnvironmentEntry {
 
 impl Default for LightingEntry {
     fn default() -> Self {
-        LightingEntry { method: classical::ID.into(), settings: Map::new(), reference: Map::new(), other: Map::new() }
+        LightingEntry {
+            method: classical::ID.into(),
+            settings: Map::new(),
+            other_settings: BTreeMap::new(),
+            reference: Map::new(),
+            other: Map::new(),
+        }
     }
 }
 
@@ -287,9 +296,20 @@ impl Default for ViewEntry {
 pub const SHARED_SETTINGS: [&str; 2] = ["masking", "multiple-scattering"];
 
 impl LightingEntry {
+    /// The live method: that of the id, `classical` where this version knows none of it or it is the reference, which is
+    /// shown beside every method.
+    pub fn live_method(&self) -> &'static dyn Method {
+        lighting::find(&self.method).filter(|found| found.info().id.0 != reference::ID).unwrap_or(&classical::Classical)
+    }
+
+    /// This version has no live method of that id.
+    pub fn is_unknown(&self) -> bool {
+        self.live_method().info().id.0 != self.method
+    }
+
     /// The settings of the method, defaults where nothing or nonsense is stored.
     pub fn settings(&self) -> Settings {
-        read_settings(classical::PARAMS, &self.settings)
+        read_settings(self.live_method().info().params, &self.settings)
     }
 
     /// The settings of the reference, see [`LightingEntry::settings`]; the shared ones are those of the method.

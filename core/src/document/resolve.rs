@@ -1,5 +1,6 @@
 //! From a document and its files to the scene that is drawn.
 
+use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
@@ -63,6 +64,24 @@ impl Curves {
         self.fitted.truncate(KEPT);
         form
     }
+
+    /// A scene with every metal in one form; those that `metal` does not know stay as they are.
+    pub fn in_form<M: Borrow<Preset>>(
+        &mut self,
+        scene: &Scene,
+        choice: FormChoice,
+        metal: impl Fn(&str) -> Option<M>,
+    ) -> Arc<Scene> {
+        let mut scene = Scene::clone(scene);
+        for material in &mut scene.materials {
+            if let Reflectance::Preset { id, fresnel } = &mut material.reflectance
+                && let Some(metal) = metal(id)
+            {
+                *fresnel = self.get(metal.borrow(), choice);
+            }
+        }
+        Arc::new(scene)
+    }
 }
 
 impl Document {
@@ -77,16 +96,8 @@ impl Document {
 
 impl Document {
     /// A resolved scene with every metal in one form, whatever its material asks for: what the reference traces.
-    pub fn in_form(&self, scene: &Arc<Scene>, choice: FormChoice, curves: &mut Curves) -> Arc<Scene> {
-        let mut scene = Scene::clone(scene);
-        for material in &mut scene.materials {
-            if let Reflectance::Preset { id, fresnel } = &mut material.reflectance
-                && let Some(metal) = self.metal(id)
-            {
-                *fresnel = curves.get(metal, choice);
-            }
-        }
-        Arc::new(scene)
+    pub fn in_form(&self, scene: &Scene, choice: FormChoice, curves: &mut Curves) -> Arc<Scene> {
+        curves.in_form(scene, choice, |id| self.metal(id))
     }
 }
 
@@ -155,7 +166,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
 fn unknown_words(document: &Document) -> Vec<String> {
     let mut notices = Vec::new();
     let method = &document.lighting.method;
-    if method != classical::ID {
+    if document.lighting.is_unknown() {
         notices.push(format!("method `{method}` is not in this version; {} is shown", classical::ID));
     }
     let tone = &document.view.tone;

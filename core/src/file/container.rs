@@ -109,6 +109,16 @@ impl Container {
         self
     }
 
+    /// A container of these arrays.
+    pub fn of_arrays(kind: Kind, header: Value, arrays: Vec<(String, Array)>) -> Container {
+        Container { arrays, ..Container::new(kind, header) }
+    }
+
+    /// All arrays with their names.
+    pub fn into_arrays(self) -> Vec<(String, Array)> {
+        self.arrays
+    }
+
     /// Takes `count` numbers out; the error says what is there instead, as a reason about the file.
     pub fn take<T: Element>(&mut self, name: &str, count: usize) -> Result<Vec<T>, String> {
         let place = self.arrays.iter().position(|(known, _)| known == name);
@@ -234,7 +244,8 @@ macro_rules! elements {
                 match self { $(Array::$variant(values) => values.len(),)* }
             }
 
-            fn bytes(&self) -> usize {
+            /// Bytes of its numbers.
+            pub fn bytes(&self) -> usize {
                 match self { $(Array::$variant(values) => size_of_val(values.as_slice()),)* }
             }
 

@@ -4,7 +4,12 @@
 
 use std::fmt;
 
+use glam::Vec3;
+
+use super::prepared::{Prepared, Reads};
+use crate::job::Handle;
 use crate::param::{ParamError, ParamSpec, Settings};
+use crate::reference::{SurfacePoint, World};
 
 /// Name of a method in documents, on the command line and in tables, lower case with hyphens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,6 +41,14 @@ impl Cover {
             Cover::None => "none",
         }
     }
+
+    /// The same with what takes the place of what is not done.
+    pub fn words(self, filled_by: &str) -> String {
+        match self {
+            Cover::None => format!("filled by {filled_by}"),
+            covered => covered.word().into(),
+        }
+    }
 }
 
 /// What a method does of each term.
@@ -57,8 +70,8 @@ impl Coverage {
     /// Every term with its name and what takes its place where the method does not do it.
     pub fn terms(&self) -> [(&'static str, Cover, &'static str); 5] {
         [
-            ("lamps", self.lamps, "shadow-mapped lights"),
-            ("environment", self.environment, "classical"),
+            ("lamps", self.lamps, "lamps with shadows"),
+            ("environment", self.environment, "the environment without shadows"),
             ("indirect diffuse", self.indirect_diffuse, "nothing"),
             ("indirect glossy", self.indirect_glossy, "nothing"),
             ("emission", self.emission, "the surface's own"),
@@ -85,12 +98,52 @@ pub struct MethodInfo {
     pub params: &'static [ParamSpec],
     /// What it does of each term.
     pub coverage: Coverage,
+    /// Parts of the scene that its preparation depends on: an edit of another leaves it fresh.
+    pub reads: Reads,
+    /// Raised when the same inputs give another preparation than before.
+    pub revision: u32,
 }
 
 /// A way to compute the light that a surface reflects.
+///
+/// What takes longer than a frame is done by [`Method::prepare`], once for what it reads; its result is plain numbers, so
+/// that it is kept on disk and handed to a graphics device. Who draws on the processor has a [`ShadePoint`]; a pass on
+/// the device is found by the id in the renderer.
 pub trait Method: Sync {
     /// What there is to know about it.
     fn info(&self) -> &'static MethodInfo;
+
+    /// Computes what frames look up. The same inputs give the same numbers on any number of threads. Long work asks the
+    /// job whether it is cancelled at least every 0.1 s, and then ends with [`MethodError::Cancelled`].
+    fn prepare(&self, _world: &World, _settings: &Settings, _job: &Handle) -> Result<Prepared, MethodError> {
+        Ok(Prepared::nothing())
+    }
+
+    /// How it draws on the processor; `None` for those that have another way to do so, or none.
+    fn points(&self) -> Option<&dyn ShadePoint> {
+        None
+    }
+}
+
+/// What a method does at one point of a surface, on the processor.
+pub trait ShadePoint: Sync {
+    /// Scene-linear radiance that the surface sends toward the viewer over the terms that the method covers; the frame
+    /// adds what it does not, see [`Coverage::fills`]. Out of its domain a method gives something finite.
+    ///
+    /// `random` are four even numbers in `[0, 1)`, well spread over the samples of a pixel. Numbers that are not finite
+    /// are counted and left out of the picture.
+    fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3;
+}
+
+/// Why a method cannot prepare a scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MethodError {
+    /// The scene has not what the method needs, or too much of it.
+    #[error("{0}")]
+    Unfit(String),
+    /// The user ended it.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl fmt::Debug for dyn Method {
@@ -113,7 +166,7 @@ pub struct UnknownMethod {
 }
 
 /// Finds a method by its name.
-pub fn find<'a>(methods: Methods<'a>, id: &str) -> Result<&'a dyn Method, UnknownMethod> {
+pub fn find<'a>(methods: &[&'a dyn Method], id: &str) -> Result<&'a dyn Method, UnknownMethod> {
     let known = || methods.iter().map(|method| method.info().id.0).collect::<Vec<_>>().join(", ");
     let found = methods.iter().find(|method| method.info().id.0 == id).copied();
     found.ok_or_else(|| UnknownMethod { id: id.into(), known: known() })
@@ -204,7 +257,7 @@ pub fn combinations(method: &dyn Method, sweeps: &[Sweep]) -> Result<Vec<Setting
 }
 
 /// Refuses sweeps that no method takes.
-pub fn check_sweeps(methods: Methods<'_>, sweeps: &[Sweep]) -> Result<(), SweepError> {
+pub fn check_sweeps(methods: &[&dyn Method], sweeps: &[Sweep]) -> Result<(), SweepError> {
     for sweep in sweeps {
         if let Some(name) = &sweep.method {
             find(methods, name)?;

@@ -1,15 +1,45 @@
 //! Lighting methods, one folder each.
 
 pub mod classical;
+pub mod drawing;
 pub mod method;
+pub mod prepared;
+
+use std::sync::{PoisonError, RwLock};
 
 use crate::leaf::Leaf;
 use crate::reference;
 
-pub use method::{Cover, Coverage, Method, MethodId, MethodInfo, Methods};
+pub use drawing::Drawing;
+pub use method::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Methods, ShadePoint};
+pub use prepared::{Prepared, Reads, Store};
 
-/// The methods of the program, in the order in which they are listed.
+/// The methods that come with the program, in the order in which they are listed.
 pub static METHODS: Methods<'static> = &[&classical::Classical, &reference::Reference];
+
+/// Methods that were added by [`register`].
+static ADDED: RwLock<Vec<&'static dyn Method>> = RwLock::new(Vec::new());
+
+/// All methods: those of the program, then those that were added. Window, command line, chart and pages list these.
+pub fn methods() -> Vec<&'static dyn Method> {
+    let added = ADDED.read().unwrap_or_else(PoisonError::into_inner);
+    METHODS.iter().chain(&*added).copied().collect()
+}
+
+/// Adds a method for the rest of the process, as a program does that embeds this one; false when there is one of its id.
+pub fn register(method: &'static dyn Method) -> bool {
+    let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);
+    let is_new = METHODS.iter().chain(&*added).all(|known| known.info().id != method.info().id);
+    if is_new {
+        added.push(method);
+    }
+    is_new
+}
+
+/// The method of that id, if there is one.
+pub fn find(id: &str) -> Option<&'static dyn Method> {
+    methods().into_iter().find(|method| method.info().id.0 == id)
+}
 
 /// The WGSL twins of this folder.
 pub static LEAVES: &[&Leaf] = &[&classical::WGSL];

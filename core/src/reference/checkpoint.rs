@@ -65,6 +65,11 @@ struct RejectedEntry {
 }
 
 impl Key {
+    /// That of another seed.
+    pub fn with_seed(&self, seed: u32) -> Key {
+        Key { seed, ..self.clone() }
+    }
+
     /// That of a tracing. Hashes the scene, see [`Fingerprint::new`].
     pub fn new(world: &World, view: &View) -> Key {
         let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(world.scene());

@@ -6,6 +6,7 @@
 mod bsdf;
 pub mod checkpoint;
 mod emitters;
+mod eye;
 mod film;
 mod lamps;
 mod layers;
@@ -26,9 +27,10 @@ mod tests;
 
 use glam::{UVec2, Vec3};
 
-use crate::lighting::{Cover, Coverage, Method, MethodId, MethodInfo};
+use crate::lighting::{Cover, Coverage, Method, MethodId, MethodInfo, Reads};
 use crate::scene::Camera;
 
+pub use eye::{Eye, SurfacePoint};
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, trace, trace_with};
@@ -54,6 +56,8 @@ static INFO: MethodInfo = MethodInfo {
         indirect_glossy: Cover::Exact,
         emission: Cover::Exact,
     },
+    reads: Reads::NOTHING,
+    revision: 1,
 };
 
 impl Method for Reference {

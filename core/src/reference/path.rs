@@ -192,11 +192,11 @@ impl Path<'_> {
 }
 
 /// Weight of light that was met with density `pdf` and might have been drawn with another: the balance heuristic.
-fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
+pub(super) fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
     if pdf.is_finite() { pdf / (pdf + other()) } else { 1.0 }
 }
 
-fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
+pub(super) fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
     let origin = offset(point.position, point.rounding, point.geometric, sample.direction);
     match sample.end {
         // A lamp that lies on a surface is not hidden by it.

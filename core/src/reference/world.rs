@@ -8,11 +8,12 @@ use super::lights::Lights;
 use super::point::Triangle;
 use super::sampler::PathSampler;
 use super::waves::{MetalWaves, Waves};
-use super::{Options, PathSample, View, path};
+use super::{Options, PathSample, View, is_spectral, path};
 use crate::material::preset::Preset;
 use crate::material::{AlphaMode, Material, Reflectance};
 use crate::math::frame::Frame;
 use crate::math::sampling::{pcg, unit};
+use crate::param::Settings;
 use crate::scene::{Mesh, Scene};
 use crate::surface::micro_normal;
 use crate::trace::{Accel, Hit, Ray};
@@ -63,6 +64,22 @@ impl World {
     /// The same for an edited scene; what is unchanged is shared.
     pub fn updated(&self, scene: &Arc<Scene>, options: Options) -> World {
         World::of_parts(scene, options, self.accel.updated(scene), self.lights.updated(scene))
+    }
+
+    /// The world as settings made of [`super::PARAMS`] ask for it, by wavelength or not, from `old` where there is one; with
+    /// the ids of metals that `metal` does not know, see [`World::by_wavelength`].
+    pub fn of_settings(
+        scene: &Arc<Scene>,
+        settings: &Settings,
+        old: Option<World>,
+        metal: impl Fn(&str) -> Option<Preset>,
+    ) -> (World, Vec<String>) {
+        let options = Options::new(settings);
+        let world = match old {
+            Some(old) => old.updated(scene, options),
+            None => World::new(scene, options),
+        };
+        if is_spectral(settings) { world.by_wavelength(metal) } else { (world, Vec::new()) }
     }
 
     fn of_parts(scene: &Arc<Scene>, options: Options, accel: Accel, lights: Lights) -> World {

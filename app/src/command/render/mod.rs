@@ -1,6 +1,7 @@
 //! `burnish render`: a scene to a picture.
 
 mod classical;
+mod points;
 mod reference;
 mod tracing;
 
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::ViewEntry;
 use burnish_core::file::PictureFormat;
-use burnish_core::lighting;
+use burnish_core::lighting::{self, Method};
 use burnish_core::param::{ParamSpec, Settings};
 use glam::UVec2;
 
@@ -19,7 +20,9 @@ use reference::ReferenceArgs;
 
 use super::stage::{self, StageArgs};
 use crate::failure::{Exit, Failure, printable};
-use crate::value;
+use crate::value::{self, MethodChoice};
+
+const REFERENCE: &str = burnish_core::reference::ID;
 
 #[derive(clap::Args)]
 #[command(after_help = settings_help())]
@@ -28,9 +31,9 @@ pub struct Args {
     stage: StageArgs,
     #[command(flatten)]
     output: Output,
-    /// How light is computed: lookups on the GPU, or paths traced on the processor
-    #[arg(long, value_enum, default_value_t = Method::Classical)]
-    method: Method,
+    /// How light is computed: classical, by lookups on the GPU; reference, by paths on the processor; see `burnish methods`
+    #[arg(long, value_name = "METHOD", default_value = lighting::classical::ID, value_parser = value::method)]
+    method: MethodChoice,
     /// Setting of the method, see below; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
     set: Vec<(String, String)>,
@@ -38,12 +41,6 @@ pub struct Args {
     classical: ClassicalArgs,
     #[command(flatten, next_help_heading = "With --method reference")]
     reference: ReferenceArgs,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Method {
-    Classical,
-    Reference,
 }
 
 /// Where the picture goes, and how it looks there.
@@ -63,18 +60,20 @@ struct Output {
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
     let Args { stage, output, method, set, classical, reference } = args;
     output.check()?;
-    let (foreign, other) = match method {
-        Method::Classical => (reference.given(), "reference"),
-        Method::Reference => (classical.given(), "classical"),
+    let (foreign, other) = match method.id() {
+        lighting::classical::ID => (reference.given(), REFERENCE),
+        REFERENCE => (classical.given(), lighting::classical::ID),
+        _ => (classical.given(), lighting::classical::ID),
     };
     if let Some(option) = foreign {
         return Err(Failure::usage(format!(
             "{option} belongs to --method {other}; choose that, or leave {option} out"
         )));
     }
-    match method {
-        Method::Classical => classical::run(&classical, &stage, &set, &output, out, err),
-        Method::Reference => reference::run(&reference, &stage, &set, &output, out, err),
+    match method.id() {
+        lighting::classical::ID => classical::run(&classical, &stage, &set, &output, out, err),
+        REFERENCE => reference::run(&reference, &stage, &set, &output, out, err),
+        _ => points::run(method.0, &reference, &stage, &set, &output, out, err),
     }
 }
 
@@ -147,6 +146,12 @@ fn settings_help() -> String {
         };
         specs.iter().map(line).collect()
     };
-    let (classical, reference) = (list(lighting::classical::PARAMS), list(burnish_core::reference::PARAMS));
-    format!("Settings of --method classical:\n{classical}Settings of --method reference:\n{reference}{}", stage::help())
+    let of = |method: &'static dyn Method| {
+        let info = method.info();
+        // How many paths is another question here: see --samples.
+        let specs = if info.id.0 == REFERENCE { burnish_core::reference::PARAMS } else { info.params };
+        format!("Settings of --method {}:\n{}", info.id, list(specs))
+    };
+    let settings: String = lighting::methods().into_iter().map(of).collect();
+    format!("{settings}{}", stage::help())
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use burnish_core::document::Document;
 use burnish_core::file::{PictureFormat, write_png};
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{MethodId, classical};
 use burnish_core::material::preset::{self, FormChoice};
 use burnish_core::param::Settings;
 use burnish_core::reference::checkpoint::Key;
@@ -58,6 +58,10 @@ impl ReferenceArgs {
 
     /// An option that was given.
     pub fn given(&self) -> Option<&'static str> {
+        self.all_given().first().copied()
+    }
+
+    fn all_given(&self) -> Vec<&'static str> {
         let ReferenceArgs { samples, time, error, seed, bounces, checkpoint, threads } = self;
         let options = [
             ("--samples", samples.is_some()),
@@ -68,7 +72,17 @@ impl ReferenceArgs {
             ("--checkpoint", checkpoint.is_some()),
             ("--threads", threads.is_some()),
         ];
-        options.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+        options.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
+    }
+
+    /// The options that other methods on the processor take too, samples and seed; any other is refused.
+    pub fn only_samples(&self, id: MethodId) -> Result<(Option<u32>, u32), Failure> {
+        let ReferenceArgs { samples, seed, threads: _, .. } = self;
+        let shared = ["--samples", "--seed", "--threads"];
+        match self.all_given().into_iter().find(|option| !shared.contains(option)) {
+            Some(option) => Err(Failure::usage(format!("{option} does not go with --method {id}; leave it out"))),
+            None => Ok((*samples, seed.unwrap_or(0))),
+        }
     }
 
     fn goal(&self) -> Goal {
@@ -92,7 +106,8 @@ impl ReferenceArgs {
         Ok(settings)
     }
 
-    fn pool(&self) -> Result<ThreadPool, Failure> {
+    /// The threads.
+    pub fn pool(&self) -> Result<ThreadPool, Failure> {
         // Zero stands for one for each core.
         let threads = self.threads.unwrap_or(0).into();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
@@ -121,14 +136,10 @@ pub fn run(
 
     let view = View { camera, size, seed: args.seed.unwrap_or(0) };
     let pool = args.pool()?;
-    let mut world = pool.install(|| World::new(&Arc::new(scene), Options::new(&settings)));
-    if reference::is_spectral(&settings) {
-        let of_document = |id: &str| document.as_ref()?.metal(id).cloned();
-        let metal = |id: &str| metals.get(id).cloned().or_else(|| of_document(id)).or_else(|| preset::find(id).ok());
-        let (by_wavelength, unknown) = world.by_wavelength(metal);
-        world = by_wavelength;
-        notices.extend(unknown.iter().map(|id| format!("the n and k of `{id}` are not known; its colour is traced")));
-    }
+    let of_document = |id: &str| document.as_ref()?.metal(id).cloned();
+    let metal = |id: &str| metals.get(id).cloned().or_else(|| of_document(id)).or_else(|| preset::find(id).ok());
+    let (world, unknown) = pool.install(|| World::of_settings(&Arc::new(scene), &settings, None, metal));
+    notices.extend(unknown.iter().map(|id| format!("the n and k of `{id}` are not known; its colour is traced")));
     tell(err, &notices)?;
     let (film, store) = match &args.checkpoint {
         Some(file) => resume(file, pool.install(|| Key::new(&world, &view)), size, args, err)?,

@@ -4,7 +4,7 @@ mod plot;
 
 use std::fmt::Write as _;
 
-use burnish_core::lighting::method::Methods;
+use burnish_core::lighting::Method;
 use burnish_core::measure::bench::{Record, Region};
 
 use super::html::{cell, escape, head, row, table};
@@ -28,7 +28,7 @@ pub fn drawing(records: &[Record]) -> String {
 }
 
 /// A page with the drawing, tables of all figures and what each method does; no scripts, nothing to load.
-pub fn page(records: &[Record], methods: Methods<'_>, command: &str) -> String {
+pub fn page(records: &[Record], methods: &[&dyn Method], command: &str) -> String {
     let scenes = by_scene(records);
     let mut html = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     html +=

@@ -48,6 +48,11 @@ impl Folders {
         self.cache.join("bench")
     }
 
+    /// What lighting methods prepared, which can be made again.
+    pub fn prepared(&self) -> PathBuf {
+        self.cache.join("prepared")
+    }
+
     /// Metals and saved materials of the user.
     pub fn presets(&self) -> PathBuf {
         self.data.join("presets")

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use burnish_core::document::Curves;
-use burnish_core::reference::{Film, Options, Pass, View, World, is_spectral, preview, trace};
+use burnish_core::reference::{Film, Pass, View, World, preview, trace};
 
 use super::desk::{Activity, Desk, Order};
 use super::{Look, Subject};
@@ -144,16 +144,9 @@ impl Tracing {
     fn prepare(&mut self, subject: &Subject) {
         let Subject { document, scene, settings, form, .. } = subject;
         let scene = document.in_form(scene, *form, &mut self.curves);
-        let options = Options::new(settings);
-        let world = match self.world.take() {
-            Some(world) => world.updated(&scene, options),
-            None => World::new(&scene, options),
-        };
-        self.world = Some(match is_spectral(settings) {
-            // A document holds every metal that its materials name.
-            true => world.by_wavelength(|id| document.metal(id).cloned()).0,
-            false => world,
-        });
+        // A document holds every metal that its materials name.
+        let metal = |id: &str| document.metal(id).cloned();
+        self.world = Some(World::of_settings(&scene, settings, self.world.take(), metal).0);
     }
 
     /// The film as a picture, if the last one is long enough ago.

@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::LazyLock;
 
-use super::{Cover, Coverage, Method, MethodId, MethodInfo};
+use super::{Cover, Coverage, Method, MethodId, MethodInfo, Reads};
 use crate::leaf::Leaf;
 use crate::material::preset::{FormChoice, Tolerance};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
@@ -43,6 +43,9 @@ static INFO: MethodInfo = MethodInfo {
         indirect_glossy: Cover::None,
         emission: Cover::Exact,
     },
+    // Its cubes are made on the device, see the renderer.
+    reads: Reads::NOTHING,
+    revision: 1,
 };
 
 impl Method for Classical {

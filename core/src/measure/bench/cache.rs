@@ -7,8 +7,8 @@ use serde_json::json;
 
 use super::{BenchError, Candidate, Record, Shot, Truth};
 use crate::file::{FileError, read_bounded, write_atomic};
+use crate::reference::Film;
 use crate::reference::checkpoint::{self, Key};
-use crate::reference::{Film, View, World};
 
 /// Raised when a record of the same inputs would hold other numbers or mean something else.
 const REVISION: u32 = 2;
@@ -40,29 +40,27 @@ impl Cache {
         Cache { fresh: true, ..self }
     }
 
-    /// The film of a view with so many samples: read, or traced and kept.
+    /// The film under a key with so many samples: read, or traced and kept.
     pub(super) fn film(
         &self,
-        world: &World,
-        view: &View,
+        key: &Key,
         samples: u32,
+        size: UVec2,
         trace: impl FnOnce(&mut Film) -> Result<(), BenchError>,
     ) -> Result<Film, BenchError> {
-        let key = Key::new(world, view);
-        let path = self.path(&film_hash(&key, samples), "film");
+        let path = self.path(&film_hash(key, samples), "film");
         let known = path.as_deref().filter(|path| !self.fresh && path.exists());
         // A file that cannot be read is made anew.
-        if let Some(film) = known.and_then(|path| checkpoint::read(path, &key).ok())
+        if let Some(film) = known.and_then(|path| checkpoint::read(path, key).ok())
             && film.samples() == samples
         {
             return Ok(film);
         }
-        let UVec2 { x, y } = view.size;
-        let mut film = Film::new(UVec2::new(x, y));
+        let mut film = Film::new(size);
         trace(&mut film)?;
         if let Some(path) = path {
             self.make_folder()?;
-            checkpoint::write(&path, &film, &key)?;
+            checkpoint::write(&path, &film, key)?;
         }
         Ok(film)
     }

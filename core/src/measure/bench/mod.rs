@@ -7,6 +7,7 @@
 
 mod cache;
 mod pareto;
+mod points;
 mod record;
 mod reference;
 mod run;
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::MeasureError;
+use crate::document::Curves;
 use crate::file::FileError;
 use crate::lighting::method::MethodId;
 use crate::material::Reflectance;
@@ -31,6 +33,7 @@ use crate::scene::{Camera, Scene};
 
 pub use cache::Cache;
 pub use pareto::pareto;
+pub use points::PointTimer;
 pub use record::{COLUMNS, Record, Region, csv};
 pub use reference::PathTimer;
 pub use run::{Candidate, Progress, measure};
@@ -59,17 +62,21 @@ pub struct Shot {
 impl Shot {
     /// The scene with its metals in one form.
     pub fn in_form(&self, choice: FormChoice) -> Arc<Scene> {
-        let mut scene = Scene::clone(&self.scene);
-        let mut curves = crate::document::Curves::default();
-        for material in &mut scene.materials {
-            if let Reflectance::Preset { id, fresnel } = &mut material.reflectance {
-                let own = self.metals.get(id).cloned();
-                if let Some(metal) = own.or_else(|| preset::find(id).ok()) {
-                    *fresnel = curves.get(&metal, choice);
-                }
-            }
-        }
-        Arc::new(scene)
+        Curves::default().in_form(&self.scene, choice, |id| self.metal(id))
+    }
+
+    /// A metal of the shot or of the library.
+    pub fn metal(&self, id: &str) -> Option<Preset> {
+        self.metals.get(id).cloned().or_else(|| preset::find(id).ok())
+    }
+
+    /// The ids of metals that neither knows: they keep the form that they have.
+    pub fn unknown_metals(&self) -> Vec<&str> {
+        let ids = self.scene.materials.iter().filter_map(|material| match &material.reflectance {
+            Reflectance::Preset { id, .. } => Some(id.as_str()),
+            Reflectance::BaseColor => None,
+        });
+        ids.filter(|id| self.metal(id).is_none()).collect()
     }
 }
 

@@ -1,6 +1,5 @@
 //! The path tracer as one of the methods that are measured.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::truth::world_of;
@@ -20,7 +19,7 @@ pub struct PathTimer {
 }
 
 struct Paths {
-    world: Arc<World>,
+    world: World,
     view: View,
     samples: u32,
     preparation: Preparation,

@@ -6,6 +6,7 @@ use glam::{UVec2, Vec3};
 
 use super::*;
 use crate::file::testing::Folder;
+use crate::lighting::Reads;
 use crate::lighting::method::{self, Cover, Coverage, Method, MethodInfo, Sweep};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use crate::reference::{self, Control, PARAMS};
@@ -34,6 +35,8 @@ static INFO: MethodInfo = MethodInfo {
         indirect_glossy: Cover::Approximate,
         emission: Cover::Exact,
     },
+    reads: Reads::NOTHING,
+    revision: 1,
 };
 
 impl Method for Wrong {

@@ -1,7 +1,5 @@
 //! The picture that all are judged by, and how far it can be trusted.
 
-use std::sync::Arc;
-
 use super::cache::film_hash;
 use super::{BenchError, Cache, Region, Shot};
 use crate::material::preset::FormChoice;
@@ -9,7 +7,7 @@ use crate::measure::{Errors, errors, interior};
 use crate::param::Settings;
 use crate::picture::Picture;
 use crate::reference::checkpoint::Key;
-use crate::reference::{self, Control, Film, Options, Pass, View, World};
+use crate::reference::{self, Control, Film, Pass, View, World};
 use crate::surface::fresnel::Form;
 
 /// A traced picture with its regions and its noise.
@@ -39,15 +37,17 @@ impl Truth {
     ) -> Result<Truth, BenchError> {
         let world = world_of(shot, settings);
         let half = (samples / 2).max(1);
+        let view = |seed| View { camera: shot.camera.clone(), size: shot.size, seed };
+        let key = Key::new(&world, &view(0));
         let films = [0, 1].map(|seed| {
-            let view = View { camera: shot.camera.clone(), size: shot.size, seed };
-            cache.film(&world, &view, half, |film| match reference::trace(&world, &view, film, half, control) {
-                Pass::Whole => Ok(()),
-                Pass::Cancelled => Err(BenchError::Cancelled),
+            cache.film(&key.with_seed(seed), half, shot.size, |film| {
+                match reference::trace(&world, &view(seed), film, half, control) {
+                    Pass::Whole => Ok(()),
+                    Pass::Cancelled => Err(BenchError::Cancelled),
+                }
             })
         });
-        let view = View { camera: shot.camera.clone(), size: shot.size, seed: 0 };
-        let key = film_hash(&Key::new(&world, &view), half);
+        let key = film_hash(&key, half);
         let [a, b] = films;
         Truth::of_halves(shot, key, &a?, &b?)
     }
@@ -82,12 +82,6 @@ pub(super) fn form_of(settings: &Settings) -> FormChoice {
 }
 
 /// A world for settings of the reference.
-pub(super) fn world_of(shot: &Shot, settings: &Settings) -> Arc<World> {
-    let world = World::new(&shot.in_form(form_of(settings)), Options::new(settings));
-    if !reference::is_spectral(settings) {
-        return Arc::new(world);
-    }
-    let own = |id: &str| shot.metals.get(id).cloned();
-    let (world, _unknown) = world.by_wavelength(|id| own(id).or_else(|| crate::material::preset::find(id).ok()));
-    Arc::new(world)
+pub(super) fn world_of(shot: &Shot, settings: &Settings) -> World {
+    World::of_settings(&shot.in_form(form_of(settings)), settings, None, |id| shot.metal(id)).0
 }

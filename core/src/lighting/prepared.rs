@@ -1,0 +1,173 @@
+//! What methods compute before their first frame, and where it is kept.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use serde_json::json;
+
+use super::method::{Method, MethodError, MethodInfo};
+use crate::file::{Array, Container, Element, FileError, Kind};
+use crate::job::Handle;
+use crate::param::{Affects, Settings};
+use crate::reference::World;
+use crate::scene::Scene;
+use crate::scene::fingerprint::Fingerprint;
+
+/// The kind of file.
+pub const KIND: Kind = Kind { id: "prepared", version: 1 };
+
+/// Largest file that is read.
+const MAX_BYTES: u64 = 16 << 30;
+
+/// Parts of a scene that a preparation depends on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reads {
+    /// Meshes and instances.
+    pub geometry: bool,
+    /// Materials with their curves and images.
+    pub materials: bool,
+    /// Punctual lights.
+    pub lights: bool,
+    /// The environment.
+    pub environment: bool,
+}
+
+impl Reads {
+    /// Nothing: there is no preparation, or the same one for every scene.
+    pub const NOTHING: Reads = Reads { geometry: false, materials: false, lights: false, environment: false };
+    /// The whole scene.
+    pub const ALL: Reads = Reads { geometry: true, materials: true, lights: true, environment: true };
+
+    /// Each part with its name for people.
+    pub fn parts(self) -> [(&'static str, bool); 4] {
+        [
+            ("geometry", self.geometry),
+            ("materials", self.materials),
+            ("lights", self.lights),
+            ("environment", self.environment),
+        ]
+    }
+}
+
+/// What a method computed: named arrays of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    arrays: Vec<(String, Array)>,
+}
+
+impl Prepared {
+    /// That of a method that needs none.
+    pub fn nothing() -> Prepared {
+        Prepared { arrays: Vec::new() }
+    }
+
+    /// The same with one array more; names must differ.
+    pub fn with<T: Element>(mut self, name: &str, values: Vec<T>) -> Prepared {
+        debug_assert!(self.arrays.iter().all(|(known, _)| known != name), "{name} twice");
+        self.arrays.push((name.into(), T::array(values)));
+        self
+    }
+
+    /// The numbers of an array of 32-bit floats; empty where there is none of that name.
+    pub fn floats(&self, name: &str) -> &[f32] {
+        match self.arrays.iter().find(|(known, _)| known == name) {
+            Some((_, Array::F32(values))) => values,
+            _ => &[],
+        }
+    }
+
+    /// The `index`th three floats of an array; zero beyond its end.
+    pub fn vector(&self, name: &str, index: usize) -> Vec3 {
+        self.floats(name).get(3 * index..3 * index + 3).map_or(Vec3::ZERO, Vec3::from_slice)
+    }
+
+    /// Memory that it keeps.
+    pub fn bytes(&self) -> u64 {
+        self.arrays.iter().map(|(_, array)| array.bytes() as u64).sum()
+    }
+
+    /// There was nothing to prepare.
+    pub fn is_nothing(&self) -> bool {
+        self.arrays.is_empty()
+    }
+}
+
+/// Hash of all that a preparation depends on: the method with its revision, the settings that affect it, the parts of the
+/// scene that it reads.
+pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
+    let MethodInfo { id, reads, revision, .. } = method.info();
+    let settings: Vec<(&str, Option<String>)> = settings
+        .iter()
+        .filter(|(spec, _)| spec.affects == Affects::Prepare)
+        .map(|(spec, _)| (spec.key, settings.text(spec.key)))
+        .collect();
+    let parts = match *reads {
+        Reads::NOTHING => Vec::new(),
+        reads => {
+            let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(scene);
+            let digests = [geometry, materials, lights, environment];
+            let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
+            read.map(|((name, _), digest)| (name, digest.to_string())).collect()
+        }
+    };
+    let inputs = json!({ "method": id.0, "revision": revision, "settings": settings, "scene": parts });
+    blake3::hash(inputs.to_string().as_bytes()).to_hex().to_string()
+}
+
+/// A folder of preparations, or none. Who has one does not wait twice for the same.
+#[derive(Clone, Debug, Default)]
+pub struct Store {
+    folder: Option<PathBuf>,
+}
+
+impl Store {
+    /// Keeps nothing.
+    pub fn none() -> Store {
+        Store::default()
+    }
+
+    /// In a folder, which is made when there is something to keep.
+    pub fn within(folder: &Path) -> Store {
+        Store { folder: Some(folder.into()) }
+    }
+
+    /// What was kept under a key; damaged files count as none.
+    pub fn read(&self, key: &str) -> Option<Prepared> {
+        let path = self.path(key).filter(|path| path.exists())?;
+        let container = Container::read(&path, KIND, MAX_BYTES).ok()?;
+        (container.header.get("key")?.as_str()? == key).then(|| Prepared { arrays: container.into_arrays() })
+    }
+
+    /// Keeps a preparation.
+    pub fn keep(&self, key: &str, prepared: &Prepared) -> Result<(), FileError> {
+        let (Some(folder), Some(path)) = (&self.folder, self.path(key)) else { return Ok(()) };
+        let remedy = "free some space, or allow writing there";
+        std::fs::create_dir_all(folder).map_err(|e| FileError::new(folder, e.to_string(), remedy))?;
+        let header = json!({ "key": key, "software": concat!("Burnish ", env!("CARGO_PKG_VERSION")) });
+        Container::of_arrays(KIND, header, prepared.arrays.clone()).write(&path)
+    }
+
+    /// The preparation of a scene: read, or computed and kept. One that cannot be kept is given all the same.
+    pub fn prepare(
+        &self,
+        method: &dyn Method,
+        world: &World,
+        settings: &Settings,
+        job: &Handle,
+    ) -> Result<Prepared, MethodError> {
+        let key = key(method, settings, world.scene());
+        if let Some(prepared) = self.read(&key) {
+            return Ok(prepared);
+        }
+        let prepared = method.prepare(world, settings, job)?;
+        if !prepared.is_nothing() {
+            // It is made again next time.
+            let _ = self.keep(&key, &prepared);
+        }
+        Ok(prepared)
+    }
+
+    fn path(&self, key: &str) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join(format!("{key}.prepared")))
+    }
+}

@@ -1,0 +1,82 @@
+//! Methods that draw point by point on the processor, measured.
+
+use std::time::Instant;
+
+use super::truth::form_of;
+use super::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
+use crate::job::Handle;
+use crate::lighting::{Drawing, Method, MethodError, Prepared};
+use crate::param::Settings;
+use crate::picture::Picture;
+use crate::reference::{Control, Film, Options, Pass, View, World};
+
+/// Of another seed than the truth, whose points it must not share.
+const SEED: u32 = 3;
+
+/// Draws on the current rayon pool. A frame is one sample of every pixel.
+pub struct PointTimer {
+    method: &'static dyn Method,
+    /// Ends the drawing.
+    control: Control,
+}
+
+struct Points {
+    method: &'static dyn Method,
+    settings: Settings,
+    world: World,
+    prepared: Prepared,
+    view: View,
+    preparation: Preparation,
+    control: Control,
+}
+
+impl PointTimer {
+    /// `None` for methods that do not draw this way.
+    pub fn new(method: &'static dyn Method, control: &Control) -> Option<PointTimer> {
+        method.points().map(|_| PointTimer { method, control: control.clone() })
+    }
+}
+
+impl FrameTimer for PointTimer {
+    fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
+        let world = World::new(&shot.in_form(form_of(settings)), Options::new(settings));
+        let start = Instant::now();
+        let prepared = self.method.prepare(&world, settings, &Handle::default()).map_err(|error| match error {
+            MethodError::Cancelled => BenchError::Cancelled,
+            MethodError::Unfit(reason) => BenchError::Method(reason),
+        })?;
+        let preparation = Preparation { secs: start.elapsed().as_secs_f64(), bytes: Some(prepared.bytes()) };
+        let view = View { camera: shot.camera.clone(), size: shot.size, seed: SEED };
+        let control = self.control.clone();
+        let settings = settings.clone();
+        Ok(Box::new(Points { method: self.method, settings, world, prepared, view, preparation, control }))
+    }
+}
+
+impl Points {
+    fn draw(&self, samples: u32) -> Result<Film, BenchError> {
+        let drawing = Drawing::new(self.method, &self.world, &self.prepared, &self.settings);
+        let drawing = drawing.ok_or_else(|| BenchError::NoTimer(self.method.info().id))?;
+        let mut film = Film::new(self.view.size);
+        match drawing.draw(&self.view, &mut film, samples, &self.control) {
+            Pass::Whole => Ok(film),
+            Pass::Cancelled => Err(BenchError::Cancelled),
+        }
+    }
+}
+
+impl Frames for Points {
+    fn preparation(&self) -> Preparation {
+        self.preparation
+    }
+
+    fn frame(&mut self) -> Result<f64, BenchError> {
+        let start = Instant::now();
+        self.draw(1)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
+    fn picture(&mut self) -> Result<Picture, BenchError> {
+        Ok(self.draw(COMPARED_FRAMES)?.picture())
+    }
+}

@@ -28,3 +28,8 @@ pub use passes::Passes;
 pub use plate::Plate;
 pub use renderer::{Renderer, View};
 pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};
+
+/// The device has a pass for this lighting method; without one a method draws on the processor, if it can.
+pub fn draws(method: burnish_core::lighting::MethodId) -> bool {
+    method.0 == burnish_core::lighting::classical::ID
+}

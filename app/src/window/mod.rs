@@ -15,6 +15,7 @@ pub mod offscreen;
 mod palette;
 mod panel;
 mod preferences;
+mod preparation;
 mod reference;
 mod request;
 mod session;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use burnish_core::document;
+use burnish_core::lighting::Store;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
@@ -12,6 +13,7 @@ use super::files::{Files, Folders, is_table};
 use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
+use super::preparation::Preparation;
 use super::reference::Reference;
 use super::request::{Request, Requests};
 use super::session::Session;
@@ -45,6 +47,7 @@ pub struct Workbench {
     preferences: Preferences,
     stage: Stage,
     reference: Reference,
+    preparation: Preparation,
     compare: Compare,
     panels: Panels,
     tree: Tree<Pane>,
@@ -73,6 +76,7 @@ impl Workbench {
         let opened = made.or_else(|| document::open(document::DEFAULT_SCENE).ok());
         let opened = opened.unwrap_or_else(|| document::reload(Default::default(), &Default::default()));
         let (files, preferences) = Files::new(&options, &stage, ctx);
+        let store = files.folders().map_or_else(Store::none, |folders| Store::within(&folders.prepared()));
         theme::install(ctx);
         theme::apply(ctx, &preferences);
         Workbench {
@@ -82,6 +86,7 @@ impl Workbench {
             preferences,
             stage,
             reference: Reference::default(),
+            preparation: Preparation::new(store),
             compare: Compare::default(),
             panels: Panels::default(),
             start: start.then(StartPage::default),
@@ -124,7 +129,11 @@ impl Workbench {
 
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.tables.is_busy() || self.thumbnails.is_drawing() || self.compare.is_busy()
+        self.files.is_busy()
+            || self.tables.is_busy()
+            || self.thumbnails.is_drawing()
+            || self.compare.is_busy()
+            || self.preparation.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -197,6 +206,7 @@ impl Workbench {
             preferences,
             stage,
             reference,
+            preparation,
             compare,
             panels,
             tree,
@@ -209,6 +219,8 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
+        let lighting = &session.document().lighting;
+        preparation.follow(lighting.live_method(), lighting.settings(), session.scene(), ui.ctx());
         let rests = reference.shown().is_some()
             || stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
         if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
@@ -220,7 +232,8 @@ impl Workbench {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }
         }
-        let mut context = Context { session, preferences, stage, reference, compare, requests, own, thumbnails };
+        let mut context =
+            Context { session, preferences, stage, reference, preparation, compare, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);

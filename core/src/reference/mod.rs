@@ -33,7 +33,7 @@ use crate::scene::Camera;
 pub use eye::{Eye, SurfacePoint};
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
-pub use passes::{Control, Pass, preview, trace, trace_with};
+pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};
 pub use settings::{COMPARED_PARAMS, Options, PARAMS, is_spectral};
 pub use world::World;
 

@@ -149,11 +149,21 @@ pub fn trace_with(
 /// A first look: the first path of the middle pixel of every block of `step` x `step` pixels, one texel each, the last
 /// column and row of blocks cut by the edge of the view. `None` when cancelled.
 pub fn preview(world: &World, view: &View, step: u32, control: &Control) -> Option<Picture> {
+    preview_with(view.size, step, control, |pixel, index| world.sample(view, pixel, index))
+}
+
+/// [`preview`] with any function of pixel and number of the path.
+pub fn preview_with(
+    size: UVec2,
+    step: u32,
+    control: &Control,
+    sample: impl Fn(UVec2, u32) -> PathSample + Sync,
+) -> Option<Picture> {
     let step = step.max(1);
-    let blocks = UVec2::new(view.size.x.div_ceil(step), view.size.y.div_ceil(step));
+    let blocks = UVec2::new(size.x.div_ceil(step), size.y.div_ceil(step));
     let texel = |block: UVec2| {
-        let pixel = (block * step + step / 2).min(view.size.saturating_sub(UVec2::ONE));
-        let PathSample { radiance, rays, .. } = control.goes_on().then(|| world.sample(view, pixel, 0))?;
+        let pixel = (block * step + step / 2).min(size.saturating_sub(UVec2::ONE));
+        let PathSample { radiance, rays, .. } = control.goes_on().then(|| sample(pixel, 0))?;
         control.rays.fetch_add(u64::from(rays), Ordering::Relaxed);
         let radiance = if radiance.is_finite() { radiance } else { glam::Vec3::ZERO };
         Some(radiance.extend(1.0))

@@ -37,6 +37,9 @@ pub struct Args {
     /// Setting of the method, see below; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
     set: Vec<(String, String)>,
+    /// Folder of what methods prepare [default: the user's cache]
+    #[arg(long, value_name = "FOLDER")]
+    cache: Option<PathBuf>,
     #[command(flatten, next_help_heading = "With --method classical")]
     classical: ClassicalArgs,
     #[command(flatten, next_help_heading = "With --method reference")]
@@ -58,7 +61,7 @@ struct Output {
 }
 
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    let Args { stage, output, method, set, classical, reference } = args;
+    let Args { stage, output, method, set, cache, classical, reference } = args;
     output.check()?;
     let (foreign, other) = match method.id() {
         lighting::classical::ID => (reference.given(), REFERENCE),
@@ -73,7 +76,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     match method.id() {
         lighting::classical::ID => classical::run(&classical, &stage, &set, &output, out, err),
         REFERENCE => reference::run(&reference, &stage, &set, &output, out, err),
-        _ => points::run(method.0, &reference, &stage, &set, &output, out, err),
+        _ => points::run(method.0, (&reference, cache.as_deref()), &stage, &set, &output, out, err),
     }
 }
 

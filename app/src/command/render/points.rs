@@ -1,13 +1,14 @@
 //! Pictures by a method that draws point by point on the processor.
 
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::classical::form_choice;
-use burnish_core::lighting::{Drawing, Method, Store};
+use burnish_core::lighting::{Drawing, Method, MethodError, MethodId, Store};
 use burnish_core::param::Settings;
 use burnish_core::reference::{Control, Film, Options, Pass, View, World};
 use glam::UVec2;
@@ -24,7 +25,7 @@ const SAMPLES: u32 = 16;
 
 pub fn run(
     method: &'static dyn Method,
-    args: &ReferenceArgs,
+    (args, cache): (&ReferenceArgs, Option<&Path>),
     stage: &StageArgs,
     set: &[(String, String)],
     output: &Output,
@@ -46,7 +47,8 @@ pub fn run(
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let job = Handle::default();
     let view = View { camera, size, seed };
-    let store = Folders::of_user().map_or_else(Store::none, |folders| Store::within(&folders.prepared()));
+    let folder = cache.map(Path::to_path_buf).or_else(|| Some(Folders::of_user()?.prepared()));
+    let store = folder.map_or_else(Store::none, |folder| Store::within(&folder));
     let pool = args.pool()?;
     let (mut film, samples) = (Film::new(size), samples.unwrap_or(SAMPLES));
     let drawn = interrupt::cancelling(
@@ -73,8 +75,7 @@ pub fn run(
     Ok(Exit::Ok)
 }
 
-fn method_failure(id: burnish_core::lighting::MethodId, error: &burnish_core::lighting::MethodError) -> Failure {
-    use burnish_core::lighting::MethodError;
+fn method_failure(id: MethodId, error: &MethodError) -> Failure {
     match error {
         MethodError::Cancelled => cancelled(),
         MethodError::Unfit(reason) => Failure::resources(format!("--method {id}: {reason}")),

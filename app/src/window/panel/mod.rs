@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::compare::Compare;
 use super::preferences::Preferences;
+use super::preparation::Preparation;
 use super::reference::Reference;
 use super::request::Requests;
 use super::session::Session;
@@ -44,6 +45,8 @@ pub struct Context<'a> {
     pub stage: &'a mut Stage,
     /// The path-traced one.
     pub reference: &'a mut Reference,
+    /// What the live method prepares.
+    pub preparation: &'a mut Preparation,
     /// Two pictures.
     pub compare: &'a mut Compare,
     /// Wishes for after the frame.

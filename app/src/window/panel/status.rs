@@ -1,6 +1,6 @@
 //! The status line: what the picture cost, how far it is, by what it was made.
 
-use burnish_core::lighting::classical;
+use burnish_core::lighting::Cover;
 use burnish_core::scene::Scene;
 use eframe::egui::{self, Align, Layout, RichText};
 
@@ -46,7 +46,8 @@ impl StatusLine {
     }
 }
 
-const FILLED_HELP: &str = "The lighting method, and by what each part of the light is computed. `none` is left black.";
+const FILLED_HELP: &str =
+    "The lighting method, and by what each part of the light is computed. `nothing` is left black.";
 
 fn item_ui(ui: &mut egui::Ui, text: &str, hover: &str) {
     ui.label(RichText::new(text).small()).on_hover_text(hover);
@@ -102,10 +103,16 @@ fn triangles(scene: &Scene) -> String {
 
 /// What computes each part of the light.
 fn filled_in(session: &Session) -> String {
-    // Whatever the document names: a notice says so where it is another.
-    let method = classical::ID;
-    let lamps = if session.scene().lights.is_empty() { "no lamps" } else { "lamps: shadow maps" };
-    format!("{method}; environment: classical; {lamps}; indirect: none")
+    // Where the document names another, a notice says so.
+    let info = session.document().lighting.live_method().info();
+    let has_lamps = !session.scene().lights.is_empty();
+    let terms = info.coverage.terms().into_iter().filter(|(term, ..)| *term != "emission");
+    let words = terms.map(|(term, cover, filled_by)| match (term, cover) {
+        ("lamps", _) if !has_lamps => "no lamps".into(),
+        (_, Cover::None) => format!("{term}: {filled_by}"),
+        _ => format!("{term}: {}", cover.word()),
+    });
+    format!("{}; {}", info.id, words.collect::<Vec<_>>().join("; "))
 }
 
 /// What the user should know about document and picture.
@@ -148,7 +155,10 @@ mod tests {
     fn what_is_missing_and_what_is_filled_in_is_told() {
         let session = Session::new(document::open("gallery:workbench").unwrap(), None);
         assert!(notices(&session, None).is_empty());
-        assert!(filled_in(&session).starts_with("classical; environment: classical;"));
+        assert!(
+            filled_in(&session)
+                .starts_with("classical; lamps: approximate; environment: approximate; indirect diffuse: nothing")
+        );
         assert!(triangles(session.scene()).ends_with("triangles"));
         let gone = document::reload(document::Document::new("/nowhere/gone.glb".into()), &Default::default());
         assert_eq!(notices(&Session::new(gone, None), None).len(), 1);

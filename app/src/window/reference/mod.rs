@@ -10,6 +10,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::document::Document;
+use burnish_core::lighting::{Method, Prepared};
 use burnish_core::material::preset::FormChoice;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -30,7 +31,16 @@ pub struct Subject {
     camera: Camera,
     size: UVec2,
     settings: Settings,
-    form: FormChoice,
+    by: By,
+}
+
+/// Who draws.
+#[derive(Clone, Debug)]
+enum By {
+    /// The path tracer, with metals in this form.
+    Paths(FormChoice),
+    /// A method without a pass on the device, with what it prepared.
+    Points(&'static dyn Method, Arc<Prepared>),
 }
 
 /// A picture of the subject on the desk.
@@ -58,6 +68,8 @@ pub struct Look {
 /// Switch and state of the reference.
 pub struct Reference {
     on: bool,
+    /// The live picture comes from here too: its method draws on the processor.
+    draws_live: bool,
     /// The viewport asked for a picture in this frame.
     asked: bool,
     /// It asked in the last one.
@@ -77,9 +89,16 @@ impl Subject {
             camera: camera.clone(),
             size: limited(size),
             settings: document.lighting.reference_settings(),
-            form: document.lighting.reference_form(),
+            by: By::Paths(document.lighting.reference_form()),
             document: document.clone(),
         }
+    }
+
+    /// The same by the document's method, which draws on the processor.
+    #[must_use]
+    pub fn by_points(self, prepared: Arc<Prepared>) -> Subject {
+        let lighting = &self.document.lighting;
+        Subject { settings: lighting.settings(), by: By::Points(lighting.live_method(), prepared), ..self }
     }
 
     /// Both give the same picture: the metals of a document only count with its scene, which is made anew with them.
@@ -87,8 +106,21 @@ impl Subject {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.camera.world_from_view == other.camera.world_from_view
             && self.camera.projection == other.camera.projection
-            && (self.size, self.form) == (other.size, other.form)
+            && self.size == other.size
+            && self.by.is_like(&other.by)
             && self.settings == other.settings
+    }
+}
+
+impl By {
+    fn is_like(&self, other: &By) -> bool {
+        match (self, other) {
+            (By::Paths(form), By::Paths(other)) => form == other,
+            (By::Points(method, prepared), By::Points(other, of_other)) => {
+                method.info().id == other.info().id && Arc::ptr_eq(prepared, of_other)
+            }
+            _ => false,
+        }
     }
 }
 
@@ -159,6 +191,7 @@ impl Default for Reference {
     fn default() -> Self {
         Reference {
             on: false,
+            draws_live: false,
             asked: false,
             watched: false,
             desk: Arc::default(),
@@ -183,7 +216,7 @@ impl Reference {
 
     /// Someone uses mouse or keyboard: the processor is theirs for a while.
     pub fn note_input(&self) {
-        if self.on || self.watched {
+        if self.on || self.draws_live || self.watched {
             self.desk.rest();
         }
     }
@@ -215,9 +248,14 @@ impl Reference {
         }
     }
 
+    /// Says whether the live picture comes from here.
+    pub fn draw_live(&mut self, draws_live: bool) {
+        self.draws_live = draws_live;
+    }
+
     /// The picture that is shown.
     pub fn shown(&self) -> Option<&Look> {
-        self.look.as_ref().filter(|_| self.on)
+        self.look.as_ref().filter(|_| self.on || self.draws_live)
     }
 
     /// The newest picture of what was asked for last, whether the reference is on or not.

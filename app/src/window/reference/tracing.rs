@@ -6,10 +6,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use burnish_core::document::Curves;
-use burnish_core::reference::{Film, Pass, View, World, preview, trace};
+use burnish_core::lighting::Drawing;
+use burnish_core::reference::{Film, Pass, View, World, preview_with, trace_with};
+use glam::UVec2;
 
 use super::desk::{Activity, Desk, Order};
-use super::{Look, Subject};
+use super::{By, Look, Subject};
 
 /// Side of the blocks of which one pixel each is traced first.
 const FIRST_LOOK: u32 = 8;
@@ -119,17 +121,25 @@ impl Tracing {
             self.step = Step::FirstLook(FIRST_LOOK);
             return None;
         };
+        let drawing = match &subject.by {
+            By::Paths(_) => None,
+            By::Points(method, prepared) => Drawing::new(*method, world, prepared, &subject.settings),
+        };
+        let sample = |pixel: UVec2, index: u32| match &drawing {
+            Some(drawing) => drawing.sample(&view, pixel, index),
+            None => world.sample(&view, pixel, index),
+        };
         let secs = || start.elapsed().saturating_sub(desk.rested().saturating_sub(order.rested)).as_secs_f64();
         match self.step {
             Step::FirstLook(side) => {
-                let picture = preview(world, &view, side, &order.control)?;
+                let picture = preview_with(view.size, side, &order.control, sample)?;
                 self.secs += secs();
                 self.step = if side > 2 { Step::FirstLook(side / 2) } else { Step::Pass(1) };
                 Some(Look { picture: Arc::new(picture), step: side, size: subject.size, ..Look::default() })
             }
             Step::Pass(samples) => {
                 let film = self.film.get_or_insert_with(|| Film::new(subject.size));
-                if trace(world, &view, film, samples, &order.control) == Pass::Cancelled {
+                if trace_with(film, samples, &order.control, sample) == Pass::Cancelled {
                     return None;
                 }
                 let secs = secs();
@@ -142,8 +152,12 @@ impl Tracing {
     }
 
     fn prepare(&mut self, subject: &Subject) {
-        let Subject { document, scene, settings, form, .. } = subject;
-        let scene = document.in_form(scene, *form, &mut self.curves);
+        let Subject { document, scene, settings, by, .. } = subject;
+        // The live scene has its metals in the form that the method asks for.
+        let scene = match by {
+            By::Paths(form) => document.in_form(scene, *form, &mut self.curves),
+            By::Points(..) => scene.clone(),
+        };
         // A document holds every metal that its materials name.
         let metal = |id: &str| document.metal(id).cloned();
         self.world = Some(World::of_settings(&scene, settings, self.world.take(), metal).0);

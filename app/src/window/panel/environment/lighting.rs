@@ -1,26 +1,109 @@
-//! Settings of the lighting method.
+//! The lighting method: which, what it covers, its preparation, its settings.
 
 use burnish_core::document::SHARED_SETTINGS;
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{self, Cover, Method};
 use burnish_core::param::Settings;
 use burnish_core::reference;
-use eframe::egui;
+use eframe::egui::{self, RichText};
 
+use super::super::Context;
 use super::row_ui;
+use crate::window::preparation::State;
 use crate::window::session::Session;
+use crate::window::widget::{choice_ui, name_ui};
+
+/// The method panel, the same for all methods.
+pub fn ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
+    let method = context.session.document().lighting.live_method();
+    method_ui(ui, context.session, method);
+    coverage_ui(ui, method);
+    preparation_ui(ui, context);
+    settings_ui(ui, context.session);
+}
+
+/// The choice of a method; the reference is not among them, it is shown beside every method.
+fn method_ui(ui: &mut egui::Ui, session: &mut Session, method: &'static dyn Method) {
+    let methods: Vec<_> = lighting::methods().into_iter().filter(|m| m.info().id.0 != reference::ID).collect();
+    let titles: Vec<&str> = methods.iter().map(|method| method.info().title).collect();
+    let chosen = methods.iter().position(|other| other.info().id == method.info().id).unwrap_or(0);
+    ui.horizontal(|ui| {
+        let width = ui.available_width();
+        let name = name_ui(ui, "Method", chosen != 0, 0.4 * width);
+        let hover = method.info().summary;
+        let picked = choice_ui(ui, "Method", &titles, chosen, ui.available_width() - 8.0, Some(&name), hover);
+        if let Some(picked) = picked.and_then(|picked| methods.get(picked)) {
+            session.edit("Lighting method", "", |document| document.set_method(picked.info().id.0));
+        }
+    });
+    ui.label(RichText::new(method.info().summary).small().weak());
+}
+
+/// What the method does of each term of the light, and what fills in the rest.
+fn coverage_ui(ui: &mut egui::Ui, method: &dyn Method) {
+    let coverage = method.info().coverage;
+    egui::CollapsingHeader::new("Coverage").default_open(false).show(ui, |ui| {
+        egui::Grid::new("coverage").num_columns(2).striped(true).show(ui, |ui| {
+            for (term, cover, filled_by) in coverage.terms() {
+                ui.label(RichText::new(term).small());
+                let text = RichText::new(cover.words(filled_by)).small();
+                ui.label(if cover == Cover::None { text.weak() } else { text });
+                ui.end_row();
+            }
+        });
+    });
+}
+
+/// How the preparation stands, and a button to make it anew.
+fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
+    let state = context.preparation.state();
+    let (badge, hover) = match state {
+        State::Needless => return,
+        State::Missing => ("not prepared".into(), "Classical light is shown until the method is prepared."),
+        State::Working(share) => {
+            (format!("preparing {:.0} %", 100.0 * share), "What there was before stays in use meanwhile.")
+        }
+        State::Fresh => ("prepared".into(), "What the method looks up was made of this very scene."),
+        State::Stale => {
+            ("stale".into(), "The scene or a setting changed since; what was prepared before stays in use.")
+        }
+    };
+    ui.horizontal(|ui| {
+        let color = match state {
+            State::Stale | State::Missing => ui.visuals().warn_fg_color,
+            _ => ui.visuals().weak_text_color(),
+        };
+        ui.label(RichText::new(badge).small().color(color)).on_hover_text(hover);
+        if let Some((bytes, took)) = context.preparation.cost() {
+            let text = format!("{:.1} MB, {:.1} s", bytes as f64 / 1e6, took.as_secs_f64());
+            ui.label(RichText::new(text).small().weak())
+                .on_hover_text("Memory, and the time that it took to make or read.");
+        }
+        match state {
+            State::Working(_) => {
+                if ui.small_button("Cancel").clicked() {
+                    context.preparation.cancel();
+                }
+            }
+            State::Stale | State::Missing if ui.small_button("Prepare again").clicked() => {
+                context.preparation.again(ui.ctx());
+            }
+            _ => {}
+        }
+    });
+    if let Some(fault) = context.preparation.fault() {
+        ui.label(RichText::new(fault).small().color(ui.visuals().error_fg_color));
+    }
+}
 
 /// A row for every setting that the method declares.
-pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
-    ui.label(classical::ID).on_hover_text("Environment maps prefiltered or sampled per pixel, shadow-mapped lamps.");
+fn settings_ui(ui: &mut egui::Ui, session: &mut Session) {
     let settings: Settings = session.document().lighting.settings();
-    let rows: Vec<_> = settings.iter().collect();
-    for (spec, value) in rows {
+    for (spec, value) in settings.iter() {
         row_ui(ui, session, (spec, spec.label), value, |document, value| {
             // The widget gives values in range only.
             let _ = document.set_lighting(spec.key, value);
         });
     }
-    debug_assert!(settings.iter().count() == classical::PARAMS.len());
 }
 
 /// A row for every setting of the path tracer that is its own.

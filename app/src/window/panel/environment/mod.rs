@@ -27,7 +27,7 @@ impl EnvironmentPanel {
         section(ui, "Exposure and tone", |ui| light::tone_ui(ui, context.session));
         section(ui, "Camera", |ui| camera::ui(ui, context.session));
         section(ui, "Saved cameras", |ui| self.saved.ui(ui, context));
-        section(ui, "Lighting method", |ui| lighting::ui(ui, context.session));
+        section(ui, "Lighting method", |ui| lighting::ui(ui, context));
         if context.reference.is_on() || context.compare.view().is_some() {
             section(ui, "Reference settings", |ui| lighting::reference_ui(ui, context.session));
         }

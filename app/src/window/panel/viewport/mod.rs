@@ -278,12 +278,19 @@ fn version(context: &Context<'_>, rect: Rect, point: egui::Pos2, shown: &Shown) 
 /// The reference where there is something of it and it is wanted, else the live picture; with the part of the texture
 /// that is the picture.
 fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Shown, glam::Vec2) {
-    let Context { session, stage, reference, .. } = context;
+    let Context { session, stage, reference, preparation, .. } = context;
     let scene = session.scene();
+    let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
+    let method = session.document().lighting.live_method();
+    let points = method.points().filter(|_| !burnish_render::draws(method.info().id));
+    reference.draw_live(!reference.is_on() && points.is_some());
     if !reference.is_on() {
-        return (stage.draw(scene, frame), glam::Vec2::ONE);
+        // Until it is prepared, classical light stands in.
+        let Some(prepared) = points.and_then(|_| preparation.prepared(method)) else {
+            return (stage.draw(scene, frame), glam::Vec2::ONE);
+        };
+        subject = subject.by_points(prepared);
     }
-    let subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
     if let Some(look) = reference.look(subject, ctx) {
         return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());
     }

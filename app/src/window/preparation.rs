@@ -1,0 +1,311 @@
+//! What the live method prepares: made in the background, kept on disk, used on while it is stale.
+//!
+//! After an edit another thread tells by hash whether the preparation is still that of the scene. One that was quick is
+//! made anew by itself; else it stays in use with a badge until someone asks for it.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use burnish_core::job::{Handle, Job, Outcome};
+use burnish_core::lighting::prepared::{Store, key};
+use burnish_core::lighting::{Method, MethodError, MethodId, Prepared, Reads};
+use burnish_core::param::Settings;
+use burnish_core::reference::{Options, World};
+use burnish_core::scene::Scene;
+use eframe::egui;
+
+/// Time of a preparation that nobody minds to be made after every edit.
+const QUICK: Duration = Duration::from_secs(1);
+
+/// How the preparation stands to the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum State {
+    /// The method needs none.
+    Needless,
+    /// There is none yet, or none could be made.
+    Missing,
+    /// It is compared with the scene, or made; so much of it is done, 0 to 1.
+    Working(f32),
+    /// Of this very scene.
+    Fresh,
+    /// Of the scene before an edit.
+    Stale,
+}
+
+/// What a preparation is for.
+#[derive(Clone)]
+struct Subject {
+    method: &'static dyn Method,
+    settings: Settings,
+    scene: Arc<Scene>,
+}
+
+/// One that is there.
+struct Held {
+    method: MethodId,
+    key: String,
+    prepared: Arc<Prepared>,
+    took: Duration,
+}
+
+/// What a job found.
+enum Found {
+    /// The held one is right.
+    Same,
+    /// It is not, and nobody asked for another.
+    Other,
+    Made(Held),
+    Failed(MethodError),
+}
+
+/// The preparation of the live method.
+pub struct Preparation {
+    store: Store,
+    /// One that took no longer is made anew after every edit.
+    quick: Duration,
+    subject: Option<Subject>,
+    held: Option<Held>,
+    state: Option<State>,
+    job: Option<Job<Found>>,
+    /// The job is about a subject before the present one.
+    outdated: bool,
+    fault: Option<String>,
+}
+
+impl Subject {
+    fn is_like(&self, other: &Subject) -> bool {
+        self.method.info().id == other.method.info().id
+            && Arc::ptr_eq(&self.scene, &other.scene)
+            && self.settings == other.settings
+    }
+
+    /// Compares what is held by `known` with the subject; makes another where `anew` is set.
+    fn work(&self, known: Option<String>, anew: bool, store: &Store, job: &Handle) -> Found {
+        let Subject { method, settings, scene } = self;
+        let key = key(*method, settings, scene);
+        if known.as_ref() == Some(&key) {
+            return Found::Same;
+        }
+        let start = Instant::now();
+        let kept = store.read(&key);
+        if kept.is_none() && !anew {
+            return Found::Other;
+        }
+        let made =
+            kept.map_or_else(|| store.prepare(*method, &World::new(scene, Options::new(settings)), settings, job), Ok);
+        match made {
+            Ok(prepared) => {
+                let prepared = Arc::new(prepared);
+                Found::Made(Held { method: method.info().id, key, prepared, took: start.elapsed() })
+            }
+            Err(error) => Found::Failed(error),
+        }
+    }
+}
+
+impl Default for Preparation {
+    fn default() -> Self {
+        Preparation {
+            store: Store::none(),
+            quick: QUICK,
+            subject: None,
+            held: None,
+            state: None,
+            job: None,
+            outdated: false,
+            fault: None,
+        }
+    }
+}
+
+impl Preparation {
+    /// Keeps preparations in a folder.
+    pub fn new(store: Store) -> Preparation {
+        Preparation { store, ..Preparation::default() }
+    }
+
+    /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
+    pub fn follow(&mut self, method: &'static dyn Method, settings: Settings, scene: &Arc<Scene>, ctx: &egui::Context) {
+        let subject = Subject { method, settings, scene: scene.clone() };
+        if self.subject.as_ref().is_none_or(|old| !old.is_like(&subject)) {
+            if self.held.as_ref().is_some_and(|held| held.method != method.info().id) {
+                (self.held, self.state) = (None, None);
+            }
+            self.fault = None;
+            self.outdated = true;
+            self.subject = Some(subject);
+        }
+        self.poll();
+        if self.outdated && self.job.is_none() {
+            let quick = self.held.as_ref().is_none_or(|held| held.took <= self.quick);
+            self.start(quick, ctx);
+        }
+    }
+
+    /// Makes it anew.
+    pub fn again(&mut self, ctx: &egui::Context) {
+        self.start(true, ctx);
+    }
+
+    /// Ends what runs; a stale one stays in use.
+    pub fn cancel(&mut self) {
+        self.job = None;
+        self.state = Some(if self.held.is_some() { State::Stale } else { State::Missing });
+    }
+
+    fn start(&mut self, anew: bool, ctx: &egui::Context) {
+        let Some(subject) = self.subject.clone() else { return };
+        self.outdated = false;
+        if subject.method.info().reads == Reads::NOTHING {
+            (self.job, self.held, self.state) = (None, None, Some(State::Needless));
+            return;
+        }
+        let (known, store, ctx) = (self.held.as_ref().map(|held| held.key.clone()), self.store.clone(), ctx.clone());
+        let label = format!("Preparing {}", subject.method.info().title);
+        let wake = move || ctx.request_repaint();
+        self.job = Some(Job::spawn(label, wake, move |job| subject.work(known, anew, &store, job)));
+    }
+
+    fn poll(&mut self) {
+        let found = match self.job.as_mut().map(Job::poll) {
+            None | Some(Outcome::Running) => return,
+            Some(Outcome::Done(found)) => found,
+            Some(Outcome::Failed) => Found::Failed(MethodError::Unfit("it failed for an unknown reason".into())),
+        };
+        self.job = None;
+        self.state = Some(match found {
+            Found::Same => State::Fresh,
+            Found::Other => State::Stale,
+            Found::Made(held) => {
+                self.held = Some(held);
+                State::Fresh
+            }
+            Found::Failed(error) => {
+                self.fault = Some(error.to_string());
+                if self.held.is_some() { State::Stale } else { State::Missing }
+            }
+        });
+    }
+
+    /// How it stands.
+    pub fn state(&self) -> State {
+        match &self.job {
+            Some(job) => State::Working(job.progress()),
+            None => self.state.unwrap_or(State::Missing),
+        }
+    }
+
+    /// What there is for a method, perhaps stale; a method that needs none has an empty one.
+    pub fn prepared(&self, method: &dyn Method) -> Option<Arc<Prepared>> {
+        if method.info().reads == Reads::NOTHING {
+            return Some(Arc::new(Prepared::nothing()));
+        }
+        self.held.as_ref().filter(|held| held.method == method.info().id).map(|held| held.prepared.clone())
+    }
+
+    /// Memory in bytes and time of what there is.
+    pub fn cost(&self) -> Option<(u64, Duration)> {
+        self.held.as_ref().map(|held| (held.prepared.bytes(), held.took))
+    }
+
+    /// Why there is no other.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    /// Another thread works on it.
+    pub fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use burnish_core::lighting::{Cover, Coverage, MethodInfo};
+    use burnish_core::scene::gallery;
+
+    /// Counts lamps, unless there are none.
+    #[derive(Debug)]
+    struct Lamps;
+
+    static INFO: MethodInfo = MethodInfo {
+        id: MethodId("lamps"),
+        title: "Lamps",
+        summary: "",
+        params: &[],
+        coverage: Coverage {
+            lamps: Cover::None,
+            environment: Cover::None,
+            indirect_diffuse: Cover::None,
+            indirect_glossy: Cover::None,
+            emission: Cover::None,
+        },
+        reads: Reads { lights: true, ..Reads::NOTHING },
+        revision: 1,
+    };
+
+    impl Method for Lamps {
+        fn info(&self) -> &'static MethodInfo {
+            &INFO
+        }
+
+        fn prepare(&self, world: &World, _: &Settings, _: &Handle) -> Result<Prepared, MethodError> {
+            match world.scene().lights.len() {
+                0 => Err(MethodError::Unfit("no lamps".into())),
+                count => Ok(Prepared::nothing().with("count", vec![count as u32])),
+            }
+        }
+    }
+
+    /// Follows a scene until no thread works on it.
+    fn settle(preparation: &mut Preparation, scene: &Arc<Scene>) -> State {
+        let ctx = egui::Context::default();
+        loop {
+            preparation.follow(&Lamps, Settings::new(INFO.params), scene, &ctx);
+            if !preparation.is_busy() {
+                return preparation.state();
+            }
+            std::thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn what_took_long_is_used_while_stale_and_made_again_on_demand() {
+        let scene = Arc::new(gallery::open("workbench").unwrap());
+        let mut preparation = Preparation { quick: Duration::ZERO, ..Preparation::default() };
+        assert_eq!(settle(&mut preparation, &scene), State::Fresh);
+        let first = preparation.prepared(&Lamps).unwrap();
+        // An edit of what is not read.
+        let mut edited = Scene::clone(&scene);
+        edited.materials[0].roughness = 0.9;
+        let edited = Arc::new(edited);
+        assert_eq!(settle(&mut preparation, &edited), State::Fresh);
+        assert!(Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+        // And of what is.
+        let mut brighter = Scene::clone(&edited);
+        brighter.lights[0].intensity *= 2.0;
+        let brighter = Arc::new(brighter);
+        assert_eq!(settle(&mut preparation, &brighter), State::Stale);
+        assert!(Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+        preparation.again(&egui::Context::default());
+        assert_eq!(settle(&mut preparation, &brighter), State::Fresh);
+        assert!(!Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+        // Back again: stale, not lost.
+        assert_eq!(settle(&mut preparation, &scene), State::Stale);
+        // Another method has none of it.
+        assert!(preparation.prepared(&burnish_core::lighting::classical::Classical).unwrap().is_nothing());
+    }
+
+    #[test]
+    fn what_is_quick_follows_every_edit_and_a_fault_is_told() {
+        let mut preparation = Preparation { quick: Duration::MAX, ..Preparation::default() };
+        let mut scene = gallery::open("workbench").unwrap();
+        assert_eq!(settle(&mut preparation, &Arc::new(scene.clone())), State::Fresh);
+        scene.lights[0].intensity *= 2.0;
+        assert_eq!(settle(&mut preparation, &Arc::new(scene.clone())), State::Fresh);
+        scene.lights.clear();
+        assert_eq!(settle(&mut preparation, &Arc::new(scene)), State::Stale);
+        assert_eq!(preparation.fault(), Some("no lamps"));
+    }
+}

@@ -1,6 +1,6 @@
 //! `burnish chart`: what lighting methods cost against how wrong they are, on one scene or many.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -39,9 +39,9 @@ pub struct Args {
     /// Object that the pictures are about, by name; repeatable [default: the scene's own subject, else all]
     #[arg(long, value_name = "NAME")]
     subject: Vec<String>,
-    /// Environment map, .hdr or .exr [default: that of the document or scene, else a studio]
+    /// Environment map, .hdr or .exr; repeatable: every scene under each [default: that of the scene, else a studio]
     #[arg(long, value_name = "FILE")]
-    env: Option<PathBuf>,
+    env: Vec<PathBuf>,
     /// Pixels of the pictures
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = value::size)]
     size: UVec2,
@@ -124,31 +124,53 @@ fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
     if names.is_empty() {
         names.push(source::DEFAULT_SCENE.into());
     }
-    let environment = args.env.as_deref().map(source::environment).transpose()?;
+    let mut environments = Vec::new();
+    for file in &args.env {
+        environments.push(Some((file.as_path(), source::environment(file)?)));
+    }
+    if environments.is_empty() {
+        environments.push(None);
+    }
     let mut shots = Vec::new();
-    for name in &names {
-        let mut opened = source::open(name)?.complete()?;
-        opened.light(environment.as_ref());
-        let camera = opened.camera(args.size);
-        let source::Opened { mut scene, notices, document, .. } = opened;
-        let name = name.to_string_lossy().to_string();
-        for notice in notices {
-            writeln!(err, "burnish: notice: {}: {}", printable(&name), printable(&notice))?;
+    for scene in &names {
+        for environment in &environments {
+            let shot = shot(scene, environment.as_ref().map(|(_, map)| map), args, err)?;
+            let under = environment.as_ref().filter(|_| environments.len() > 1);
+            let under = under.and_then(|(file, _)| file.file_stem()).map(|stem| stem.to_string_lossy());
+            let name = under.map_or_else(|| shot.name.clone(), |map| format!("{} under {map}", shot.name));
+            shots.push(Shot { name, ..shot });
         }
-        if !args.subject.is_empty() {
-            scene.subject = subject(&scene, &args.subject)?;
-        }
-        let exposure_ev = document.as_ref().map_or(0.0, |document| document.view.exposure_ev as f32);
-        let metals = document.iter().flat_map(|document| &document.presets);
-        let metals = metals.map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
-        let shot = Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals };
-        for id in shot.unknown_metals() {
-            let (name, id) = (printable(&shot.name), printable(id));
-            writeln!(err, "burnish: notice: {name}: the n and k of `{id}` are not known; its form is not changed")?;
-        }
-        shots.push(shot);
     }
     Ok(shots)
+}
+
+/// What is looked at of a SCENE.
+fn shot(
+    scene: &OsStr,
+    environment: Option<&source::EnvironmentFile>,
+    args: &Args,
+    err: &mut dyn Write,
+) -> Result<Shot, Failure> {
+    let mut opened = source::open(scene)?.complete()?;
+    opened.light(environment);
+    let camera = opened.camera(args.size);
+    let name = scene.to_string_lossy().to_string();
+    let source::Opened { mut scene, notices, document, .. } = opened;
+    for notice in notices {
+        writeln!(err, "burnish: notice: {}: {}", printable(&name), printable(&notice))?;
+    }
+    if !args.subject.is_empty() {
+        scene.subject = subject(&scene, &args.subject)?;
+    }
+    let exposure_ev = document.as_ref().map_or(0.0, |document| document.view.exposure_ev as f32);
+    let metals = document.iter().flat_map(|document| &document.presets);
+    let metals = metals.map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
+    let shot = Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals };
+    for id in shot.unknown_metals() {
+        let (name, id) = (printable(&shot.name), printable(id));
+        writeln!(err, "burnish: notice: {name}: the n and k of `{id}` are not known; its form is not changed")?;
+    }
+    Ok(shot)
 }
 
 /// The instances of these names.

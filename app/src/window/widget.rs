@@ -53,10 +53,9 @@ pub fn param_ui(ui: &mut egui::Ui, spec: &ParamSpec, value: ParamValue, base: Pa
     let mut edit = ParamEdit::default();
     ui.push_id(spec.key, |ui| {
         ui.horizontal(|ui| {
-            let controls = ui.available_width() - RESET_WIDTH - ui.spacing().item_spacing.x;
-            let name = name_ui(ui, spec.label, value != base, controls * NAME_SHARE).on_hover_text(&hover);
-            let rest = controls - name.rect.width() - ui.spacing().item_spacing.x;
-            edit = control_ui(ui, spec, value, rest.max(40.0), &name, &hover);
+            let [names, controls] = columns(ui);
+            let name = name_ui(ui, spec.label, value != base, names).on_hover_text(&hover);
+            edit = control_ui(ui, spec, value, controls, &name, &hover);
             if reset_ui(ui, spec.label, value != base) {
                 edit = ParamEdit { change: Some(Change::Reset), ended: true };
             }
@@ -66,6 +65,13 @@ pub fn param_ui(ui: &mut egui::Ui, spec: &ParamSpec, value: ParamValue, base: Pa
         }
     });
     edit
+}
+
+/// Widths of names and of controls in rows like those of [`param_ui`].
+pub fn columns(ui: &egui::Ui) -> [f32; 2] {
+    let gap = ui.spacing().item_spacing.x;
+    let both = ui.available_width() - RESET_WIDTH - gap;
+    [both * NAME_SHARE, (both - both * NAME_SHARE - gap).max(40.0)]
 }
 
 /// Name of a row with a dot in front of what was changed. Its text names the control.

@@ -21,6 +21,9 @@ impl fmt::Display for MethodId {
     }
 }
 
+/// What fills in a term that is left out of the picture.
+const NOTHING: &str = "nothing";
+
 /// How well a method does a term of the light that leaves a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cover {
@@ -45,6 +48,7 @@ impl Cover {
     /// The same with what takes the place of what is not done.
     pub fn words(self, filled_by: &str) -> String {
         match self {
+            Cover::None if filled_by == NOTHING => "left out".into(),
             Cover::None => format!("filled by {filled_by}"),
             covered => covered.word().into(),
         }
@@ -72,8 +76,8 @@ impl Coverage {
         [
             ("lamps", self.lamps, "lamps with shadows"),
             ("environment", self.environment, "the environment without shadows"),
-            ("indirect diffuse", self.indirect_diffuse, "nothing"),
-            ("indirect glossy", self.indirect_glossy, "nothing"),
+            ("indirect diffuse", self.indirect_diffuse, NOTHING),
+            ("indirect glossy", self.indirect_glossy, NOTHING),
             ("emission", self.emission, "the surface's own"),
         ]
     }

@@ -17,6 +17,7 @@ pub fn trials() -> Vec<Trial> {
     let gpu: &[Need] = &[Need::Gpu];
     vec![
         trial("every_panel_looks_as_accepted", gpu, every_panel),
+        trial("the_method_panel_looks_as_accepted", gpu, method_panel),
         trial("the_window_looks_as_accepted_in_both_themes", gpu, whole_window),
         trial("start_page_palette_and_shortcut_page_look_as_accepted", gpu, pages),
         trial("the_import_preview_looks_as_accepted_in_both_themes", gpu, import_preview),
@@ -56,6 +57,21 @@ fn every_panel() {
         bench.workbench().show_panel(shown);
         look(&mut bench, &format!("panel_{}", shown.title().to_lowercase()));
     }
+    judge(&mut bench);
+}
+
+fn method_panel() {
+    let setup = Setup { name: "method", scene: Some(SCENE), size: [380.0, 1140.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Environment) {
+        bench.workbench().show_panel(pane);
+        bench.workbench().hide_panel(pane);
+    }
+    bench.workbench().show_panel(Pane::Environment);
+    bench.until_shown("Coverage");
+    bench.click("Coverage");
+    bench.window.run_steps(20);
+    look(&mut bench, "method");
     judge(&mut bench);
 }
 

@@ -58,6 +58,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
             chart::a_chart_is_the_same_twice_and_kept_in_between,
         ),
         trial("what cannot be measured is told", &[], chart::what_cannot_be_measured_is_told),
+        trial("the page of methods is that of the program", &[], the_page_of_methods),
         trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),
         trial(
             "a traced picture that goes on is the uninterrupted one",
@@ -101,6 +102,12 @@ fn free_of_the_gpu() -> Vec<Trial> {
             fitting::a_preset_that_cannot_be_written_is_no_fault_of_the_table,
         ),
     ]
+}
+
+fn the_page_of_methods() {
+    let page = fs::read_to_string(repository().join("docs/methods.md")).expect("the page");
+    let now = burnish(&["methods", "--markdown"]).succeeded().out;
+    assert!(page == now, "make it anew: burnish methods --markdown > docs/methods.md");
 }
 
 fn with_an_adapter() -> Vec<Trial> {

@@ -10,7 +10,7 @@ use super::super::Context;
 use super::row_ui;
 use crate::window::preparation::State;
 use crate::window::session::Session;
-use crate::window::widget::{choice_ui, name_ui};
+use crate::window::widget::{choice_ui, columns, name_ui};
 
 /// The method panel, the same for all methods.
 pub fn ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
@@ -27,10 +27,9 @@ fn method_ui(ui: &mut egui::Ui, session: &mut Session, method: &'static dyn Meth
     let titles: Vec<&str> = methods.iter().map(|method| method.info().title).collect();
     let chosen = methods.iter().position(|other| other.info().id == method.info().id).unwrap_or(0);
     ui.horizontal(|ui| {
-        let width = ui.available_width();
-        let name = name_ui(ui, "Method", chosen != 0, 0.4 * width);
-        let hover = method.info().summary;
-        let picked = choice_ui(ui, "Method", &titles, chosen, ui.available_width() - 8.0, Some(&name), hover);
+        let [names, controls] = columns(ui);
+        let name = name_ui(ui, "Method", chosen != 0, names);
+        let picked = choice_ui(ui, "Method", &titles, chosen, controls, Some(&name), method.info().summary);
         if let Some(picked) = picked.and_then(|picked| methods.get(picked)) {
             session.edit("Lighting method", "", |document| document.set_method(picked.info().id.0));
         }

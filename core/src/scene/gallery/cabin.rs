@@ -31,7 +31,7 @@ const ROOM: Room = Room { middle: Vec3::new(0.0, 1.1, 0.0), half: Vec3::new(1.6,
 const WALL: f32 = 0.24;
 /// Middle of the window, height and place along the wall, and its size.
 const WINDOW: Vec2 = Vec2::new(-0.15, 1.3);
-const SIZE: Vec2 = Vec2::new(0.62, 0.52);
+const SIZE: Vec2 = Vec2::new(0.7, 0.58);
 
 fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
@@ -44,7 +44,7 @@ fn build(settings: &Settings) -> Scene {
     walls(&mut scene);
     window(&mut scene);
     scene.environment = ambient(Vec3::new(0.12, 0.08, 0.05), Vec3::new(0.16, 0.11, 0.07));
-    scene.cameras.push(Camera::look_at("main", Vec3::new(0.34, 1.2, 1.0), Vec3::new(-0.62, 0.9, -0.28), 0.8));
+    scene.cameras.push(Camera::look_at("main", Vec3::new(0.2, 1.08, 0.72), Vec3::new(-0.62, 0.84, -0.28), 0.8));
     scene
 }
 
@@ -89,7 +89,7 @@ fn window(scene: &mut Scene) {
     let sky = Material {
         name: "window".into(),
         base_color: Vec3::splat(0.02),
-        emission: Vec3::new(62.0, 70.0, 80.0),
+        emission: Vec3::new(46.0, 52.0, 59.0),
         roughness: 0.5,
         ..Material::default()
     };

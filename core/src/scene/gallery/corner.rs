@@ -1,6 +1,6 @@
 //! The corner of a closed room that no lamp reaches: all light has bounced at least once.
 //!
-//! A lamp on a cupboard lights the ceiling, and that lights the corner. Light sources that are put on the
+//! Lamps on ledges light the ceiling, and that lights the corner. Light sources that are put on the
 //! walls instead have their spikes and their darkening where the walls meet and where things touch.
 
 use glam::{Affine3A, Vec2, Vec3};
@@ -50,13 +50,14 @@ fn build(settings: &Settings) -> Scene {
     let floor = Material { base_color_texture: Some(squares), roughness: 0.5, ..paint("floor", Vec3::ONE) };
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [orange, blue, floor, white, white, white]);
-    // The lamp lies on a cupboard above the height of the eye and shines at the ceiling.
-    let cupboard = Vec3::new(0.6, 1.5, 1.36);
-    let middle = Vec3::new(-0.95, 0.5 * cupboard.y - 0.03, -0.4);
-    add(&mut scene, "cupboard", shape::block(cupboard, 0.01, 2), white, at(middle));
-    let size = Vec2::new(0.5, 1.2);
-    add_panel(&mut scene, "lamp", Vec3::new(-0.95, 1.5, -0.4), Vec3::Y, size, Vec3::new(15.0, 14.0, 12.6));
-    scene.environment = ambient(Vec3::splat(0.2), Vec3::splat(0.35));
+    // Lamps lie on ledges above the picture and shine at the ceiling, all of which lights what is below.
+    for (name, side) in [("left", -1.0), ("right", 1.0)] {
+        let ledge = shape::block(Vec3::new(0.3, 0.05, 2.64), 0.005, 2);
+        add(&mut scene, &format!("ledge-{name}"), ledge, white, at(Vec3::new(1.37 * side, 1.66, 0.0)));
+        let (place, size) = (Vec3::new(1.35 * side, 1.72, 0.0), Vec2::new(0.16, 2.3));
+        add_panel(&mut scene, &format!("lamp-{name}"), place, Vec3::Y, size, Vec3::new(19.0, 17.7, 15.9));
+    }
+    scene.environment = ambient(Vec3::splat(0.45), Vec3::splat(0.8));
     scene.cameras.push(Camera::look_at("main", Vec3::new(-0.1, 1.0, 1.14), Vec3::new(0.74, 0.42, -0.62), 0.76));
     scene
 }

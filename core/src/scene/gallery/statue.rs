@@ -92,14 +92,14 @@ fn build_fireballs(settings: &Settings) -> Scene {
     ROOM.add(&mut scene, [slate, slate, floor, slate, slate, slate]);
     // Place, radius and radiance: the further, the larger.
     let (amber, red, blue, green) =
-        (Vec3::new(22.0, 9.0, 2.2), Vec3::new(22.0, 2.6, 1.0), Vec3::new(2.4, 8.0, 24.0), Vec3::new(3.0, 16.0, 3.4));
+        (Vec3::new(13.0, 4.2, 0.6), Vec3::new(13.0, 1.0, 0.4), Vec3::new(0.7, 3.6, 14.0), Vec3::new(0.9, 9.0, 1.2));
     let balls = [
-        (Vec3::new(-0.5, 1.28, 0.3), 0.08, amber),
-        (Vec3::new(0.62, 1.02, 0.2), 0.075, blue),
-        (Vec3::new(-0.66, 0.62, -0.3), 0.085, blue),
-        (Vec3::new(0.47, 0.6, 0.44), 0.055, amber),
-        (Vec3::new(0.42, 1.46, -0.42), 0.085, red),
-        (Vec3::new(-0.36, 0.62, 0.5), 0.05, green),
+        (Vec3::new(-0.5, 1.28, 0.3), 0.105, amber),
+        (Vec3::new(0.62, 1.02, 0.2), 0.1, blue),
+        (Vec3::new(-0.66, 0.62, -0.3), 0.11, blue),
+        (Vec3::new(0.47, 0.6, 0.44), 0.07, amber),
+        (Vec3::new(0.42, 1.46, -0.42), 0.11, red),
+        (Vec3::new(-0.36, 0.62, 0.5), 0.065, green),
     ];
     for (i, (position, radius, radiance)) in balls.into_iter().enumerate() {
         add_glowing_ball(&mut scene, &format!("fireball-{}", i + 1), position, radius, radiance);

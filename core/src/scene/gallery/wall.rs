@@ -39,7 +39,7 @@ const PARAMS: &[ParamSpec] = &[
 /// The hollow of both rooms reaches from the floor, y = 0, to 2.2 m.
 const ROOM: Room = Room { middle: Vec3::new(0.0, 1.1, 0.0), half: Vec3::new(2.0, 1.1, 1.5), thickness: 0.15 };
 /// Where the wall ends, along z.
-const END: f32 = 0.15;
+const END: f32 = 0.0;
 
 fn build(settings: &Settings) -> Scene {
     let mut scene = Scene { name: SCENE.name.into(), ..Scene::default() };
@@ -69,7 +69,7 @@ fn build(settings: &Settings) -> Scene {
     let floor = add_material(&mut scene, floor);
     ROOM.add(&mut scene, [warm, cool, floor, white, white, dark]);
     let size = Vec2::new(0.9, 0.9);
-    add_panel(&mut scene, "lamp", Vec3::new(-0.85, 2.15, -0.6), Vec3::NEG_Y, size, Vec3::new(11.0, 10.4, 9.4));
+    add_panel(&mut scene, "lamp", Vec3::new(-0.8, 2.15, 0.15), Vec3::NEG_Y, size, Vec3::new(13.0, 12.2, 11.0));
     scene.environment = ambient(Vec3::splat(0.2), Vec3::splat(0.3));
     scene.cameras.push(Camera::look_at("main", Vec3::new(0.05, 1.25, 1.46), Vec3::new(0.01, 0.86, -0.4), 0.92));
     scene

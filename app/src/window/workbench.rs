@@ -6,6 +6,7 @@ use burnish_core::document;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
+use super::chart::Chart;
 use super::commands::{Command, Entry, Menu, TABLE};
 use super::compare::Compare;
 use super::files::{Files, Folders, is_table};
@@ -46,6 +47,7 @@ pub struct Workbench {
     stage: Stage,
     reference: Reference,
     compare: Compare,
+    chart: Chart,
     panels: Panels,
     tree: Tree<Pane>,
     /// The layout differs from that of the preferences.
@@ -83,6 +85,7 @@ impl Workbench {
             stage,
             reference: Reference::default(),
             compare: Compare::default(),
+            chart: Chart::new(files.folders().map(Folders::bench)),
             panels: Panels::default(),
             start: start.then(StartPage::default),
             status: StatusLine::default(),
@@ -124,7 +127,11 @@ impl Workbench {
 
     /// Another thread reads or writes a file or draws small pictures.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.tables.is_busy() || self.thumbnails.is_drawing() || self.compare.is_busy()
+        self.files.is_busy()
+            || self.tables.is_busy()
+            || self.thumbnails.is_drawing()
+            || self.compare.is_busy()
+            || self.chart.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -177,6 +184,16 @@ impl Workbench {
         &self.compare
     }
 
+    /// Time against error.
+    pub fn chart(&self) -> &Chart {
+        &self.chart
+    }
+
+    /// Time against error, for tests that bring records of their own.
+    pub fn chart_mut(&mut self) -> &mut Chart {
+        &mut self.chart
+    }
+
     /// The source of the picture, for trials of its faults.
     pub fn stage_mut(&mut self) -> &mut Stage {
         &mut self.stage
@@ -187,6 +204,7 @@ impl Workbench {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
         let revision = self.session.revision;
+        self.chart.frame();
         if ui.input(is_used) {
             self.note_input();
         }
@@ -198,6 +216,7 @@ impl Workbench {
             stage,
             reference,
             compare,
+            chart,
             panels,
             tree,
             start,
@@ -220,7 +239,7 @@ impl Workbench {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }
         }
-        let mut context = Context { session, preferences, stage, reference, compare, requests, own, thumbnails };
+        let mut context = Context { session, preferences, stage, reference, compare, chart, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);

@@ -348,7 +348,12 @@ impl Document {
 }
 
 /// Keeps a value unless it is the default.
-fn store(specs: &[ParamSpec], stored: &mut Map<String, Value>, key: &str, value: ParamValue) -> Result<(), ParamError> {
+pub(super) fn store(
+    specs: &[ParamSpec],
+    stored: &mut Map<String, Value>,
+    key: &str,
+    value: ParamValue,
+) -> Result<(), ParamError> {
     let spec = param::find(specs, key)?;
     let json = spec.json(value);
     if spec.from_json(&json)? == spec.default() {

@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::window::chart::Chart;
 use crate::window::compare::Compare;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::reference::Reference;
@@ -40,7 +41,9 @@ fn bench() -> Harness<'static, Bench> {
         bench.session.now_secs = ui.input(|input| input.time);
         let Bench { panel, session, preferences, stage, reference, compare, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
-        panel.ui(ui, &mut Context { session, preferences, stage, reference, compare, requests, own, thumbnails });
+        let chart = &mut Chart::new(None);
+        panel
+            .ui(ui, &mut Context { session, preferences, stage, reference, compare, chart, requests, own, thumbnails });
     };
     let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);
     harness.run_steps(2);

@@ -9,7 +9,7 @@ use burnish_core::measure::bench::Record;
 use burnish_core::param::ParamValue;
 use burnish_tests::{Need, trial};
 use eframe::egui::{Key, Modifiers, Role};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use glam::UVec2;
 use libtest_mimic::Trial;
 
@@ -19,7 +19,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         trial("a_chart_point_becomes_a_side_is_wiped_copied_and_undone", &[], from_point_to_wipe),
         trial("the_plan_of_a_chart_tells_what_is_wrong_where_it_is_typed", &[], plan),
-        trial("a_small_chart_is_measured_kept_and_measured_anew", &[Need::Gpu], measured),
+        trial("a_small_chart_is_measured_and_kept", &[Need::Gpu], measured),
         trial("a_measurement_is_ended_and_the_window_does_not_wait", &[Need::Gpu], cancelled),
     ]
 }
@@ -123,7 +123,8 @@ fn from_point_to_wipe() {
 
 fn plan() {
     let mut bench = bench("plan");
-    let measure = |bench: &Bench| !bench.window.get_by_role_and_label(Role::Button, "Measure").is_disabled();
+    let measure =
+        |bench: &Bench| !bench.window.get_by_role_and_label(Role::Button, "Measure").accesskit_node().is_disabled();
     bench.window.get_by_label("8 measurements");
     bench.window.get_by_role_and_label(Role::TextInput, "Values of classical 1").focus();
     bench.window.run_steps(2);
@@ -149,7 +150,7 @@ fn plan() {
 fn small(workbench: &mut Workbench) {
     let plan = &mut workbench.chart_mut().plan;
     (plan.size, plan.samples) = (UVec2::new(32, 18), 4);
-    for (chosen, sweep) in plan.methods.iter_mut().zip(["samples=0,2", "samples=1"]) {
+    for (chosen, sweep) in plan.methods.iter_mut().zip(["samples=2", "samples=1"]) {
         chosen.sweeps = vec![sweep.into()];
     }
 }
@@ -163,17 +164,11 @@ fn measured() {
     bench.until("it is measured", |workbench| !workbench.chart().is_busy());
     let first = bench.workbench().chart().records();
     assert_eq!(bench.workbench().chart().fault(), None);
-    assert_eq!(first.len(), 3);
+    assert_eq!(first.len(), 2);
     assert!(bench.window.query_by_label_contains("classical samples=2: ").is_some());
     bench.click_role(Role::Button, "Measure");
     bench.until("it is read", |workbench| !workbench.chart().is_busy());
     assert_eq!(bench.workbench().chart().records(), first, "times and all: it was kept");
-    bench.click_role(Role::CheckBox, "Measure anew");
-    bench.click_role(Role::Button, "Measure");
-    bench.until("it is measured again", |workbench| !workbench.chart().is_busy());
-    let again = bench.workbench().chart().records();
-    assert_ne!(again, first);
-    assert!(again.iter().zip(first.iter()).all(|(a, b)| a.errors == b.errors));
     assert!(bench.session().history().past().is_empty(), "measuring is no edit");
 }
 

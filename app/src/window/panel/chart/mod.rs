@@ -4,6 +4,8 @@ mod diagram;
 mod plan;
 mod plot;
 
+use std::sync::Arc;
+
 use burnish_core::document::Side;
 use burnish_core::measure::bench::{Record, Region};
 use eframe::egui;
@@ -31,15 +33,22 @@ const REGIONS: [(Region, &str); 3] = [
 pub struct ChartPanel {
     /// Place of the picked record.
     picked: Option<usize>,
+    /// The records that were shown last.
+    shown: Arc<Vec<Record>>,
 }
 
 impl ChartPanel {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
-        let header = egui::CollapsingHeader::new("What is measured").default_open(true);
+        let records = context.chart.records();
+        let arrived = !Arc::ptr_eq(&records, &self.shown) && !records.is_empty();
+        if arrived {
+            (self.shown, self.picked) = (records.clone(), None);
+        }
+        // The chart needs the room, once there is one.
+        let header = egui::CollapsingHeader::new("What is measured").default_open(true).open(arrived.then_some(false));
         header.show_unindented(ui, |ui| plan::ui(ui, context));
         plan::run_ui(ui, context);
-        let records = context.chart.records();
         if records.is_empty() {
             if !context.chart.is_busy() {
                 ui.weak("Nothing is measured yet.");
@@ -59,9 +68,11 @@ impl ChartPanel {
         let diagram = Diagram::new(records, context.chart.measure, context.chart.region);
         let sides: Vec<String> = diagram.marks.iter().map(|mark| letters(context, &records[mark.record])).collect();
         let picked = diagram.marks.iter().position(|mark| Some(mark.record) == self.picked);
-        let details = |mark: &Mark| format!("{}\n{}", mark.label, details(&records[mark.record]));
-        let notes = plot::Notes { picked, sides: &sides, details: &details };
-        let height = (0.72 * ui.available_width()).clamp(HEIGHT[0], HEIGHT[1]);
+        let hover = |mark: &Mark| format!("{}\n{}", mark.label, details(&records[mark.record]));
+        let notes = plot::Notes { picked, sides: &sides, details: &hover };
+        let height = (0.85 * ui.available_width()).clamp(HEIGHT[0], HEIGHT[1]);
+        let mark = diagram.marks.iter().find(|mark| Some(mark.record) == self.picked);
+        pick_ui(ui, context, mark.map(|mark| (mark, &records[mark.record])));
         plot::legend(ui, &diagram);
         if let Some((clicked, shift)) = plot::ui(ui, &diagram, height, &notes) {
             self.picked = diagram.marks.get(clicked).map(|mark| mark.record);
@@ -69,10 +80,8 @@ impl ChartPanel {
                 store(context, record, Side::A);
             }
         }
-        let mark = diagram.marks.iter().find(|mark| Some(mark.record) == self.picked);
-        match mark {
-            Some(mark) => mark_ui(ui, context, mark, &records[mark.record]),
-            None => _ = ui.weak("Click a mark to see its figures and to compare it."),
+        if let Some(mark) = mark {
+            ui.small(details(&records[mark.record]));
         }
     }
 }
@@ -95,22 +104,26 @@ fn axis_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     });
 }
 
-/// What is known of a mark, and the means to look at it.
-fn mark_ui(ui: &mut egui::Ui, context: &mut Context<'_>, mark: &Mark, record: &Record) {
-    ui.strong(&mark.label);
+/// The picked mark and the means to look at it, in a place that is always there: the chart does not move.
+fn pick_ui(ui: &mut egui::Ui, context: &mut Context<'_>, picked: Option<(&Mark, &Record)>) {
+    match picked {
+        Some((mark, _)) => {
+            let noise = if mark.hollow { " (noise)" } else { "" };
+            let text = egui::RichText::new(format!("{}{noise}", mark.label)).strong();
+            ui.add(egui::Label::new(text).truncate());
+        }
+        None => _ = ui.weak("Click a mark to compare it."),
+    }
     ui.horizontal(|ui| {
         for side in Side::ALL {
             let letter = side.letter();
             let hover = format!("Show the document by this method and these settings as side {letter}.");
-            if ui.button(format!("As {letter}")).on_hover_text(hover).clicked() {
+            let button = ui.add_enabled(picked.is_some(), egui::Button::new(format!("As {letter}")));
+            if let Some((_, record)) = picked.filter(|_| button.on_hover_text(hover).clicked()) {
                 store(context, record, side);
             }
         }
-        if mark.hollow {
-            ui.weak("within the noise of the reference");
-        }
     });
-    ui.small(details(record));
 }
 
 /// Makes a record a side; where both sides are there, they are shown.

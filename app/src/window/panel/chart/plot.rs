@@ -9,7 +9,7 @@ use crate::report::bench::{COLORS, MARKERS};
 use crate::report::chart::Marker;
 
 /// Room for the numbers left of the area, for titles above and below it.
-const MARGINS: [f32; 4] = [46.0, 20.0, 12.0, 34.0];
+const MARGINS: [f32; 4] = [46.0, 20.0, 18.0, 34.0];
 /// Half the size of a mark's place, points.
 const HALF: f32 = 7.0;
 
@@ -118,7 +118,7 @@ fn settings(painter: &Painter, diagram: &Diagram, area: Rect, color: Color32) {
         let at = diagram.place(area, mark);
         let text = painter.layout_no_wrap(mark.settings.clone(), font.clone(), color);
         let size = text.size();
-        let corners = [vec2(9.0, -size.y), vec2(9.0, 1.0), vec2(-9.0 - size.x, 1.0), vec2(-9.0 - size.x, -size.y)];
+        let corners = [vec2(11.0, -size.y), vec2(11.0, 1.0), vec2(-11.0 - size.x, 1.0), vec2(-11.0 - size.x, -size.y)];
         let places = corners.into_iter().map(|corner| Rect::from_min_size(at + corner, size));
         let free = places.into_iter().find(|place| {
             area.contains_rect(*place) && placed.iter().all(|other| !other.intersects(place.shrink(1.0)))
@@ -154,7 +154,7 @@ fn color(method: usize, visuals: &egui::Visuals) -> Color32 {
 /// A mark of a method; a hollow one has no filling.
 fn paint(painter: &Painter, at: Pos2, (method, hollow): (usize, bool), visuals: &egui::Visuals) {
     let color = color(method, visuals);
-    let fill = if hollow { visuals.panel_fill } else { color.gamma_multiply(0.6) };
+    let fill = if hollow { visuals.panel_fill } else { color };
     let stroke = Stroke::new(1.6, color);
     let closed = |points: &[[f32; 2]]| {
         let points = points.iter().map(|[x, y]| at + vec2(*x, *y)).collect();

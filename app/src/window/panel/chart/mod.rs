@@ -33,8 +33,12 @@ const REGIONS: [(Region, &str); 3] = [
 pub struct ChartPanel {
     /// Place of the picked record.
     picked: Option<usize>,
+    /// Places of the records that became sides.
+    stored: [Option<usize>; 2],
     /// The records that were shown last.
     shown: Arc<Vec<Record>>,
+    /// Made once for what is drawn of them.
+    diagram: Option<(ErrorMeasure, Region, Arc<Diagram>)>,
 }
 
 impl ChartPanel {
@@ -43,7 +47,7 @@ impl ChartPanel {
         let records = context.chart.records();
         let arrived = !Arc::ptr_eq(&records, &self.shown) && !records.is_empty();
         if arrived {
-            (self.shown, self.picked) = (records.clone(), None);
+            *self = ChartPanel { shown: records.clone(), ..ChartPanel::default() };
         }
         // The chart needs the room, once there is one.
         let header = egui::CollapsingHeader::new("What is measured").default_open(true).open(arrived.then_some(false));
@@ -65,24 +69,63 @@ impl ChartPanel {
     }
 
     fn chart_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>, records: &[Record]) {
-        let diagram = Diagram::new(records, context.chart.measure, context.chart.region);
-        let sides: Vec<String> = diagram.marks.iter().map(|mark| letters(context, &records[mark.record])).collect();
+        let diagram = self.diagram(records, context.chart.measure, context.chart.region);
+        let sides: Vec<String> = diagram.marks.iter().map(|mark| self.letters(context, mark.record, records)).collect();
         let picked = diagram.marks.iter().position(|mark| Some(mark.record) == self.picked);
         let hover = |mark: &Mark| format!("{}\n{}", mark.label, details(&records[mark.record]));
         let notes = plot::Notes { picked, sides: &sides, details: &hover };
         let height = (0.85 * ui.available_width()).clamp(HEIGHT[0], HEIGHT[1]);
         let mark = diagram.marks.iter().find(|mark| Some(mark.record) == self.picked);
-        pick_ui(ui, context, mark.map(|mark| (mark, &records[mark.record])));
+        if let Some((mark, side)) = pick_ui(ui, mark).and_then(|side| Some((mark?, side))) {
+            self.store(context, mark.record, &records[mark.record], side);
+        }
         plot::legend(ui, &diagram);
         if let Some((clicked, shift)) = plot::ui(ui, &diagram, height, &notes) {
             self.picked = diagram.marks.get(clicked).map(|mark| mark.record);
-            if let Some(record) = self.picked.and_then(|place| records.get(place)).filter(|_| shift) {
-                store(context, record, Side::A);
+            if let Some((place, record)) = self.picked.and_then(|place| Some((place, records.get(place)?)))
+                && shift
+            {
+                self.store(context, place, record, Side::A);
             }
         }
         if let Some(mark) = mark {
             ui.small(details(&records[mark.record]));
         }
+    }
+
+    fn diagram(&mut self, records: &[Record], measure: ErrorMeasure, region: Region) -> Arc<Diagram> {
+        let known = self.diagram.as_ref().filter(|(of, on, _)| (*of, *on) == (measure, region));
+        let diagram = known.map_or_else(|| Arc::new(Diagram::new(records, measure, region)), |known| known.2.clone());
+        self.diagram = Some((measure, region, diagram.clone()));
+        diagram
+    }
+
+    /// Makes a record a side; where both sides are there, they are shown.
+    fn store(&mut self, context: &mut Context<'_>, place: usize, record: &Record, side: Side) {
+        if context.chart.settings(record).is_none() {
+            let words = format!("This program has no method `{}`.", record.method);
+            return context.requests.push(Request::Error(words));
+        }
+        context.chart.store(record, side, context.session);
+        self.stored[side as usize] = Some(place);
+        let both = Side::ALL.iter().all(|side| context.session.document().snapshot_of(*side).is_some());
+        let shown = context.compare.view().is_some_and(CompareView::has_sides);
+        if both && !shown {
+            context.requests.push(Request::Command(Command::Compare(CompareView::Wipe)));
+        } else {
+            let more = if both { "" } else { "; store another mark as the other side to compare" };
+            context.requests.push(Request::Notice(format!("Stored as {}{more}", side.letter())));
+        }
+    }
+
+    /// The letters of the sides that a record was made, as long as they are so.
+    fn letters(&self, context: &Context<'_>, place: usize, records: &[Record]) -> String {
+        let found = records.get(place).and_then(|record| context.chart.settings(record));
+        let Some((id, settings)) = found else { return String::new() };
+        let is = |side: &Side| {
+            self.stored[*side as usize] == Some(place) && context.session.document().is_side_by(*side, id, &settings)
+        };
+        Side::ALL.into_iter().filter(is).map(Side::letter).collect()
     }
 }
 
@@ -104,50 +147,29 @@ fn axis_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     });
 }
 
-/// The picked mark and the means to look at it, in a place that is always there: the chart does not move.
-fn pick_ui(ui: &mut egui::Ui, context: &mut Context<'_>, picked: Option<(&Mark, &Record)>) {
+/// The picked mark and the means to look at it, in a place that is always there: the chart does not move. Returns the
+/// side that it is to be.
+fn pick_ui(ui: &mut egui::Ui, picked: Option<&Mark>) -> Option<Side> {
     match picked {
-        Some((mark, _)) => {
+        Some(mark) => {
             let noise = if mark.hollow { " (noise)" } else { "" };
             let text = egui::RichText::new(format!("{}{noise}", mark.label)).strong();
             ui.add(egui::Label::new(text).truncate());
         }
         None => _ = ui.weak("Click a mark to compare it."),
     }
+    let mut chosen = None;
     ui.horizontal(|ui| {
         for side in Side::ALL {
             let letter = side.letter();
             let hover = format!("Show the document by this method and these settings as side {letter}.");
             let button = ui.add_enabled(picked.is_some(), egui::Button::new(format!("As {letter}")));
-            if let Some((_, record)) = picked.filter(|_| button.on_hover_text(hover).clicked()) {
-                store(context, record, side);
+            if button.on_hover_text(hover).clicked() {
+                chosen = Some(side);
             }
         }
     });
-}
-
-/// Makes a record a side; where both sides are there, they are shown.
-fn store(context: &mut Context<'_>, record: &Record, side: Side) {
-    if context.chart.settings(record).is_none() {
-        let words = format!("This program has no method `{}`.", record.method);
-        return context.requests.push(Request::Error(words));
-    }
-    context.chart.store(record, side, context.session);
-    let both = Side::ALL.iter().all(|side| context.session.document().snapshot_of(*side).is_some());
-    let shown = context.compare.view().is_some_and(CompareView::has_sides);
-    if both && !shown {
-        context.requests.push(Request::Command(Command::Compare(CompareView::Wipe)));
-    } else {
-        let more = if both { "" } else { "; store another mark as the other side to compare" };
-        context.requests.push(Request::Notice(format!("Stored as {}{more}", side.letter())));
-    }
-}
-
-/// The letters of the sides that a record is.
-fn letters(context: &Context<'_>, record: &Record) -> String {
-    let Some((id, settings)) = context.chart.settings(record) else { return String::new() };
-    let is = |side: &Side| context.session.document().is_side_by(*side, id, &settings);
-    Side::ALL.into_iter().filter(is).map(Side::letter).collect()
+    chosen
 }
 
 /// Costs and errors in words.

@@ -63,7 +63,7 @@ pub fn run_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
             if button.on_hover_text("End the measurement; what is finished is kept.").clicked() {
                 context.chart.cancel();
             }
-            ui.spinner();
+            // Nothing here moves: a window that is drawn takes time from what is timed.
             return;
         }
         let hover = "Measure the scene as it is, from this point of view. Leave the window alone meanwhile: what it draws \

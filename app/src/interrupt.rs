@@ -31,18 +31,16 @@ pub(crate) fn watch() -> io::Result<Arc<AtomicBool>> {
     Ok(raised)
 }
 
-/// How long a signal waits until it is heard.
-const POLL: Duration = Duration::from_millis(20);
+/// Time between two looks.
+const LOOK: Duration = Duration::from_millis(20);
 
-/// Does `work` on another thread and calls `cancel` when a signal comes meanwhile.
-pub(crate) fn cancelling<T: Send>(raised: &AtomicBool, cancel: impl Fn(), work: impl FnOnce() -> T + Send) -> T {
+/// Does `work` on another thread and calls `look` again and again until it is done.
+pub(crate) fn meanwhile<T: Send>(mut look: impl FnMut(), work: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let work = scope.spawn(work);
         while !work.is_finished() {
-            if raised.load(Ordering::Relaxed) {
-                cancel();
-            }
-            std::thread::sleep(POLL);
+            look();
+            std::thread::sleep(LOOK);
         }
         work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })

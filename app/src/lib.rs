@@ -6,7 +6,9 @@
 mod command;
 mod failure;
 pub mod interrupt;
+mod number;
 mod report;
+mod rig;
 mod source;
 mod value;
 pub mod window;

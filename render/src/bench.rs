@@ -8,6 +8,7 @@ use burnish_core::lighting::method::MethodId;
 use burnish_core::measure::bench::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
+use burnish_core::reference::Control;
 use burnish_core::scene::{Environment, gallery};
 use glam::{UVec2, Vec3};
 
@@ -16,9 +17,10 @@ use crate::{Gpu, Passes, RenderError, Renderer, View};
 /// Pixels of the calibration pass.
 const CALIBRATION_SIZE: UVec2 = UVec2::new(320, 180);
 
-/// A timer for each method that is drawn on the device.
-pub fn timers(passes: &Arc<Passes>) -> Vec<(MethodId, Box<dyn FrameTimer>)> {
-    vec![(MethodId(classical::ID), Box::new(ClassicalTimer { passes: passes.clone(), warm: false }))]
+/// A timer for each method that is drawn on the device; `control` ends a picture between two of its frames.
+pub fn timers(passes: &Arc<Passes>, control: &Control) -> Vec<(MethodId, Box<dyn FrameTimer>)> {
+    let classical_timer = ClassicalTimer { passes: passes.clone(), warm: false, control: control.clone() };
+    vec![(MethodId(classical::ID), Box::new(classical_timer))]
 }
 
 /// Draws the default scene by lookups: a piece of work that stays the same while methods and scenes change. Returns its
@@ -40,12 +42,14 @@ struct ClassicalTimer {
     passes: Arc<Passes>,
     /// The shaders are compiled.
     warm: bool,
+    control: Control,
 }
 
 struct ClassicalFrames {
     renderer: Renderer,
     view: View,
     preparation: Preparation,
+    control: Control,
 }
 
 impl FrameTimer for ClassicalTimer {
@@ -61,7 +65,8 @@ impl FrameTimer for ClassicalTimer {
         self.passes.gpu.wait().map_err(|e| BenchError::Method(e.to_string()))?;
         let secs = start.elapsed().as_secs_f64();
         let bytes = before.zip(allocated(&self.passes.gpu)).map(|(before, after)| after.saturating_sub(before));
-        Ok(Box::new(ClassicalFrames { renderer, view, preparation: Preparation { secs, bytes } }))
+        let preparation = Preparation { secs, bytes };
+        Ok(Box::new(ClassicalFrames { renderer, view, preparation, control: self.control.clone() }))
     }
 }
 
@@ -76,7 +81,8 @@ impl Frames for ClassicalFrames {
 
     fn picture(&mut self) -> Result<Picture, BenchError> {
         let view = View { jitter_frames: COMPARED_FRAMES, ..self.view.clone() };
-        self.renderer.render(&view).map_err(words)
+        let picture = self.renderer.render_while(&view, |_| !self.control.is_cancelled()).map_err(words)?;
+        picture.ok_or(BenchError::Cancelled)
     }
 }
 

@@ -8,20 +8,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use burnish_core::file::write_atomic;
 use burnish_core::lighting;
-use burnish_core::lighting::method::{self, Method, MethodId, Sweep};
-use burnish_core::measure::bench::{
-    self, BenchError, Cache, Candidate, PathTimer, PointTimer, Record, Rig, Shot, Truth,
-};
-use burnish_core::param::Settings;
-use burnish_core::reference::{self, Control};
+use burnish_core::lighting::method::{self, Method, Sweep};
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, Record, Rig, Shot};
+use burnish_core::reference::Control;
 use burnish_core::scene::{Scene, gallery};
-use burnish_render::{Gpu, Passes};
+use burnish_render::Gpu;
 use glam::UVec2;
 
 use crate::failure::{Exit, Failure, printable};
 use crate::report::bench::{drawing, page};
 use crate::window::Folders;
-use crate::{interrupt, source, value};
+use crate::{interrupt, rig, source, value};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -73,8 +70,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let control = Control::default();
     let gpu = Gpu::new().map_err(Failure::resources)?;
-    let passes = Arc::new(Passes::new(&gpu));
-    let mut rig = rig(&gpu, &passes, &control)?;
+    let mut rig = rig::rig(&gpu, &control).map_err(Failure::resources)?;
 
     let mut records = Vec::new();
     let mut failed = None;
@@ -197,18 +193,6 @@ fn cache(args: &Args) -> Result<Cache, Failure> {
     Ok(if args.fresh { cache.fresh() } else { cache })
 }
 
-fn rig<'a>(gpu: &Gpu, passes: &Arc<Passes>, control: &Control) -> Result<Rig<'a>, Failure> {
-    let mut timers = burnish_render::bench::timers(passes);
-    timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
-    for method in lighting::methods() {
-        if let Some(timer) = PointTimer::new(method, control) {
-            timers.push((method.info().id, Box::new(timer)));
-        }
-    }
-    let calibrate = burnish_render::bench::calibration(passes).map_err(Failure::resources)?;
-    Ok(Rig { timers, calibrate: Box::new(calibrate), machine: gpu.report().name.clone() })
-}
-
 /// The records of a shot; a line is written for each step that is new.
 fn measure(
     shot: &Shot,
@@ -233,9 +217,11 @@ fn measure(
         Ok(())
     };
     progress(&format!("{}: tracing the reference", shot.name))?;
-    let settings = Settings::new(reference::PARAMS);
-    let trace = || Truth::trace(shot, &settings, args.samples, cache, control);
-    let truth = interrupt::cancelling(stop, || control.cancel(), trace)?;
+    let truth = rig::truth(shot, args.samples, (cache, control), None, || {
+        if stop.load(Ordering::Relaxed) {
+            control.cancel();
+        }
+    })?;
     bench::measure(shot, &truth, candidates, rig, cache, &mut progress)
 }
 

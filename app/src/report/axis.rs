@@ -35,6 +35,19 @@ impl Axis {
         Axis { title, from, to, scale: Scale::Log, ticks }
     }
 
+    /// Whole decades around values, at least one; those that are not above 0 do not count.
+    pub fn decades(title: &'static str, values: impl Iterator<Item = f64>) -> Axis {
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for value in values.filter(|v| v.is_finite() && *v > 0.0) {
+            (least, most) = (least.min(value), most.max(value));
+        }
+        if most <= 0.0 {
+            (least, most) = (1.0, 1.0);
+        }
+        let (from, to) = (least.log10().floor(), most.log10().ceil());
+        Axis::log(title, 10f64.powf(from), 10f64.powf(to.max(from + 1.0)))
+    }
+
     /// From `-to` to `to` in decades, linear within `linear` of 0; both powers of ten.
     pub fn signed_log(title: &'static str, linear: f64, to: f64) -> Axis {
         let (first, last) = (linear.log10().round() as i32, to.log10().round() as i32);
@@ -90,6 +103,14 @@ mod tests {
         let axis = Axis::log("x", 0.02, 200.0);
         assert_eq!(axis.ticks.iter().map(|v| tick(*v)).collect::<Vec<_>>(), ["0.1", "1", "10", "100"]);
         assert!(is_near(axis.at(2.0), 0.5) && axis.at(0.0) == 0.0 && axis.at(-1.0) == 0.0);
+    }
+
+    #[test]
+    fn decades_are_whole_and_at_least_one() {
+        let axis = Axis::decades("x", [0.02, 3.0, f64::NAN, 0.0].into_iter());
+        assert!((axis.from - 0.01).abs() < 1e-9 && (axis.to - 10.0).abs() < 1e-9);
+        assert!(Axis::decades("x", [].into_iter()).to > 1.0);
+        assert_eq!(Axis::decades("x", [10.0].into_iter()).ticks.len(), 2);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 //!
 //! `study` has the numbers, `summary` the charts over all metals, `metal` the part about each; `chart` and `axis` draw.
 
-mod axis;
+pub mod axis;
 pub mod bench;
-mod chart;
+pub mod chart;
 mod html;
 mod looks;
 mod metal;

@@ -278,6 +278,7 @@ pub const TABLE: &[Entry] = &[
     panel(Pane::Presets, "Presets panel", "Show the metals or put them away."),
     panel(Pane::Environment, "Environment panel", "Show light and view or put them away."),
     panel(Pane::Compare, "Compare panel", "Show snapshots and what differs between A and B or put them away."),
+    panel(Pane::Chart, "Chart panel", "Show time against error of lighting methods or put it away."),
     panel(Pane::Reflectance, "Reflectance panel", "Show the plot of reflectance or put it away."),
     panel(Pane::History, "History panel", "Show the list of steps or put it away."),
     entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),

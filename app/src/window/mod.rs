@@ -4,6 +4,7 @@
 //! and `burnish snapshot --ui` draw it offscreen. Panels are in `panel/`, one file each; they edit the document through
 //! [`Session::edit`] and ask for the rest by [`Request`]s. The picture comes from [`Stage`].
 
+mod chart;
 mod commands;
 mod compare;
 mod edits;
@@ -31,6 +32,7 @@ mod user_presets;
 mod widget;
 mod workbench;
 
+pub use chart::{Chart, ErrorMeasure};
 pub use commands::{Command, Entry, Menu, TABLE};
 pub use compare::{Compare, CompareView, Legend};
 pub use files::Folders;

@@ -7,6 +7,7 @@ use burnish_core::lighting::Store;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
+use super::chart::Chart;
 use super::commands::{Command, Entry, Menu, TABLE};
 use super::compare::Compare;
 use super::files::{Files, Folders, is_table};
@@ -49,6 +50,7 @@ pub struct Workbench {
     reference: Reference,
     preparation: Preparation,
     compare: Compare,
+    chart: Chart,
     panels: Panels,
     tree: Tree<Pane>,
     /// The layout differs from that of the preferences.
@@ -88,6 +90,7 @@ impl Workbench {
             reference: Reference::default(),
             preparation: Preparation::new(store),
             compare: Compare::default(),
+            chart: Chart::new(files.folders().map(Folders::bench)),
             panels: Panels::default(),
             start: start.then(StartPage::default),
             status: StatusLine::default(),
@@ -134,6 +137,7 @@ impl Workbench {
             || self.thumbnails.is_drawing()
             || self.compare.is_busy()
             || self.preparation.is_busy()
+            || self.chart.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -186,6 +190,16 @@ impl Workbench {
         &self.compare
     }
 
+    /// Time against error.
+    pub fn chart(&self) -> &Chart {
+        &self.chart
+    }
+
+    /// Time against error, for tests that bring records of their own.
+    pub fn chart_mut(&mut self) -> &mut Chart {
+        &mut self.chart
+    }
+
     /// The source of the picture, for trials of its faults.
     pub fn stage_mut(&mut self) -> &mut Stage {
         &mut self.stage
@@ -196,6 +210,7 @@ impl Workbench {
         theme::apply(ui.ctx(), &self.preferences);
         self.session.now_secs = ui.input(|input| input.time);
         let revision = self.session.revision;
+        self.chart.frame();
         if ui.input(is_used) {
             self.note_input();
         }
@@ -208,6 +223,7 @@ impl Workbench {
             reference,
             preparation,
             compare,
+            chart,
             panels,
             tree,
             start,
@@ -233,7 +249,7 @@ impl Workbench {
             }
         }
         let mut context =
-            Context { session, preferences, stage, reference, preparation, compare, requests, own, thumbnails };
+            Context { session, preferences, stage, reference, preparation, compare, chart, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);

@@ -304,7 +304,7 @@ impl Document {
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,
-            Place::Method => self.set_method(&from.lighting.method),
+            Place::Method => self.lighting.choose(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
             Place::Reference(key) => setting(&mut self.lighting.reference, &from.lighting.reference, key),
             Place::Camera => self.view.camera = from.view.camera.clone(),

@@ -332,20 +332,6 @@ impl Document {
         }
     }
 
-    /// Chooses a live method; the settings of the former wait until it is chosen again.
-    pub fn set_method(&mut self, id: &str) {
-        let lighting = &mut self.lighting;
-        if lighting.method == id {
-            return;
-        }
-        let settings = lighting.other_settings.remove(id).unwrap_or_default();
-        let former = std::mem::replace(&mut lighting.settings, settings);
-        let method = std::mem::replace(&mut lighting.method, id.into());
-        if !former.is_empty() {
-            lighting.other_settings.insert(method, former);
-        }
-    }
-
     /// Sets a setting of the lighting method; the default is not stored.
     pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
         store(self.lighting.live_method().info().params, &mut self.lighting.settings, key, value)
@@ -361,7 +347,12 @@ impl Document {
 }
 
 /// Keeps a value unless it is the default.
-fn store(specs: &[ParamSpec], stored: &mut Map<String, Value>, key: &str, value: ParamValue) -> Result<(), ParamError> {
+pub(super) fn store(
+    specs: &[ParamSpec],
+    stored: &mut Map<String, Value>,
+    key: &str,
+    value: ParamValue,
+) -> Result<(), ParamError> {
     let spec = param::find(specs, key)?;
     let json = spec.json(value);
     if spec.from_json(&json)? == spec.default() {

@@ -4,6 +4,7 @@
 //! cameras, view. [`open`] reads it with its sources, [`resolve`] makes the [`Scene`](crate::scene::Scene) that is
 //! drawn, [`History`] undoes. No window and no GPU here: the command line uses the same functions.
 
+mod by_method;
 mod camera;
 mod difference;
 mod edit;

@@ -16,6 +16,7 @@ pub fn trials() -> Vec<Trial> {
         trial("snapshots_are_taken_renamed_restored_and_deleted", &[], snapshots),
         trial("a_click_picks_in_either_half", &[], picked),
         trial("the_error_of_the_live_picture_is_mapped_and_dropped_when_it_changes", &[], mapped),
+        trial("a_button_over_the_picture_hears_a_click_of_several_frames", &[], slow_click),
         trial("both_sides_can_be_traced", &[], traced),
     ]
 }
@@ -113,6 +114,16 @@ fn views() {
     bench.keys(Modifiers::NONE, Key::W);
     bench.until("nothing is traced for nobody", |w| !w.reference().is_tracing());
     assert!(bench.session().history().past().is_empty());
+}
+
+/// Press and release come in frames of their own, as they do where a frame takes long.
+fn slow_click() {
+    let mut bench = bench("slow-click");
+    for (label, traced) in [("Reference", true), ("Live", false)] {
+        let at = bench.window.get_by_role_and_label(Role::RadioButton, label).rect().center();
+        bench.drag(at, at);
+        assert_eq!(bench.window.state().as_ref().is_some_and(|w| w.reference().is_on()), traced, "{label}");
+    }
 }
 
 fn snapshots() {

@@ -22,6 +22,7 @@ pub fn trials() -> Vec<Trial> {
         trial("start_page_palette_and_shortcut_page_look_as_accepted", gpu, pages),
         trial("the_import_preview_looks_as_accepted_in_both_themes", gpu, import_preview),
         trial("a_wipe_with_its_list_looks_as_accepted_in_both_themes", gpu, wipe_with_list),
+        trial("a_chart_looks_as_accepted_in_both_themes", gpu, chart),
         trial("legends_of_error_maps_look_as_accepted", gpu, legends),
         trial("every_menu_shows_its_commands", &[], menus),
     ]
@@ -146,6 +147,26 @@ fn wipe_with_list() {
     }
     bench.workbench().ask(Request::Command(Command::Compare(CompareView::SideBySide)));
     look(&mut bench, "side_by_side");
+    judge(&mut bench);
+}
+
+/// With sides, a picked mark and marks within the noise.
+fn chart() {
+    let setup = Setup { name: "chart", scene: Some(SCENE), size: [1280.0, 800.0], drawn: true };
+    let mut bench = Bench::new(setup);
+    bench.workbench().chart_mut().set_records(super::chart::records());
+    bench.workbench().show_panel(Pane::Chart);
+    bench.window.run_steps(3);
+    bench.click("classical samples=0: 3.1 ms, relMSE 0.0121");
+    bench.click("As A");
+    bench.click("classical samples=16: 30.5 ms, relMSE 0.0021");
+    bench.click("As B");
+    // The message leaves.
+    bench.window.run_steps(700);
+    for (dark, name) in [(true, "chart_dark"), (false, "chart_light")] {
+        bench.workbench().preferences_mut().dark = Some(dark);
+        look(&mut bench, name);
+    }
     judge(&mut bench);
 }
 

@@ -4,6 +4,7 @@
 //! monkey loose twenty times.
 
 mod bench;
+mod chart;
 mod compare;
 mod import;
 mod looks;
@@ -20,6 +21,7 @@ fn main() {
         import::trials(),
         looks::trials(),
         compare::trials(),
+        chart::trials(),
         monkey::trials(),
         reference::trials(),
         snapshot::trials(),

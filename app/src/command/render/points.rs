@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use burnish_core::file::write_picture;
@@ -51,18 +52,19 @@ pub fn run(
     let store = folder.map_or_else(Store::none, |folder| Store::within(&folder));
     let pool = args.pool()?;
     let (mut film, samples) = (Film::new(size), samples.unwrap_or(SAMPLES));
-    let drawn = interrupt::cancelling(
-        &stop,
-        || job.cancel(),
-        || {
-            pool.install(|| {
-                let world = World::new(&Arc::new(scene), Options::new(&settings));
-                let prepared = store.prepare(method, &world, &settings, &job)?;
-                let drawing = Drawing::new(method, &world, &prepared, &settings);
-                Ok(drawing.map(|drawing| drawing.draw(&view, &mut film, samples, &Control::of_job(&job))))
-            })
-        },
-    );
+    let cancel = || {
+        if stop.load(Ordering::Relaxed) {
+            job.cancel();
+        }
+    };
+    let drawn = interrupt::meanwhile(cancel, || {
+        pool.install(|| {
+            let world = World::new(&Arc::new(scene), Options::new(&settings));
+            let prepared = store.prepare(method, &world, &settings, &job)?;
+            let drawing = Drawing::new(method, &world, &prepared, &settings);
+            Ok(drawing.map(|drawing| drawing.draw(&view, &mut film, samples, &Control::of_job(&job))))
+        })
+    });
     match drawn.map_err(|error| method_failure(id, &error))? {
         Some(Pass::Whole) => {}
         Some(Pass::Cancelled) => return Err(cancelled()),

@@ -7,8 +7,18 @@ use std::fmt::Write as _;
 use burnish_core::lighting::Method;
 use burnish_core::measure::bench::{Record, Region};
 
+use super::chart::Marker;
 use super::html::{cell, escape, head, row, table};
+use crate::number::three_digits;
 use plot::Panels;
+
+/// Marks of methods in the order in which they appear.
+pub const MARKERS: [Marker; 7] =
+    [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star, Marker::Plus];
+
+/// Their colours, of Okabe and Ito, sRGB: the classes `m0` to `m5` of the style. One more has the colour of the text.
+pub const COLORS: [[u8; 3]; 6] =
+    [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 
 /// Records of one scene, in their order.
 fn by_scene(records: &[Record]) -> Vec<Vec<&Record>> {
@@ -77,7 +87,7 @@ fn section(scene: &[&Record]) -> String {
         ["method and settings", "prepare, s", "memory, MB", "frame, ms", "x calibration", "frames"].into_iter();
     let costs = |r: &Record| {
         let numbers = [r.prepare_secs, r.bytes.map_or(f64::NAN, |b| b as f64 / 1e6), 1e3 * r.frame_secs, r.ratio()];
-        numbers.map(|v| cell(&number(v))).into_iter().chain([cell(&r.frames.to_string())])
+        numbers.map(|v| cell(&three_digits(v))).into_iter().chain([cell(&r.frames.to_string())])
     };
     let rows: String = scene.iter().map(|r| row(&escape(&label(r, &varied)), costs(r))).collect();
     html += &table("", "What it costs", &head(titles), &rows);
@@ -94,11 +104,11 @@ fn section(scene: &[&Record]) -> String {
                 let under = value.abs() <= floor;
                 let mark =
                     if under { " <span title=\"within the noise of the reference\">\u{2248}</span>" } else { "" };
-                cell(&(number(*value) + mark))
+                cell(&(three_digits(*value) + mark))
             });
             row(&escape(&label(r, &varied)), cells.collect::<Vec<_>>())
         };
-        let noise = row("noise of the reference", floors.map(|v| cell(&number(v))));
+        let noise = row("noise of the reference", floors.map(|v| cell(&three_digits(v))));
         let rows: String = scene.iter().map(line).chain([noise]).collect();
         let what = match region {
             Region::Frame => "Errors on all pixels",
@@ -110,19 +120,8 @@ fn section(scene: &[&Record]) -> String {
     html
 }
 
-/// Three digits; a dash for what is not known.
-fn number(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        v if v < 1e-3 => format!("{value:.1e}"),
-        v if v < 1e4 => format!("{value:.*}", (2.0 - v.log10().floor()).max(0.0) as usize),
-        v if v.is_finite() => format!("{value:.0}"),
-        _ => "\u{2013}".into(),
-    }
-}
-
 /// Settings that differ between records of a method in a scene.
-fn varied(scene: &[&Record]) -> Vec<(String, String)> {
+pub fn varied(scene: &[&Record]) -> Vec<(String, String)> {
     let mut keys = Vec::new();
     for record in scene {
         for (key, value) in &record.settings {
@@ -145,7 +144,7 @@ fn label(record: &Record, varied: &[(String, String)]) -> String {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub mod tests {
     use burnish_core::lighting::METHODS;
     use burnish_core::measure::Errors;
 
@@ -169,6 +168,15 @@ pub(super) mod tests {
             floors: [Some(floor), Some(floor), None],
             truth_samples: 512,
         }
+    }
+
+    #[test]
+    fn the_style_has_the_colours_of_methods() {
+        let style = include_str!("../style.css");
+        for (index, [r, g, b]) in COLORS.into_iter().enumerate() {
+            assert!(style.contains(&format!(".m{index}{{color:#{r:02x}{g:02x}{b:02x}}}")), "{index}");
+        }
+        assert!(style.contains(".m6{color:var(--fg)}") && COLORS.len() + 1 == MARKERS.len());
     }
 
     #[test]

@@ -3,17 +3,13 @@
 use burnish_core::measure::bench::{Record, Region, pareto};
 
 use super::super::axis::Axis;
-use super::super::chart::{Chart, Marker, Plot};
-use super::{label, varied};
+use super::super::chart::{Chart, Plot};
+use super::{MARKERS, label, varied};
 
 /// Width and height of a panel, and of the area between its axes.
 const PANEL: [f64; 2] = [500.0, 380.0];
 const AREA: [f64; 4] = [64.0, 54.0, 400.0, 270.0];
 const COLUMNS: usize = 2;
-
-/// Marks of methods in the order in which they appear; their colours are the classes `m0` to `m6` of the style.
-const MARKERS: [Marker; 7] =
-    [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star, Marker::Plus];
 
 /// The drawing of all scenes.
 pub struct Panels<'a> {
@@ -83,8 +79,8 @@ impl<'a> Panels<'a> {
         let errors = marks.iter().map(|mark| mark.error).chain([floor]).filter(|e| *e > 0.0);
         let area = [x + AREA[0], y + AREA[1], AREA[2], AREA[3]];
         let plot = Plot {
-            x: decades("time of a frame, ms", marks.iter().map(|mark| mark.ms)),
-            y: decades(on_what(scene), errors),
+            x: Axis::decades("time of a frame, ms", marks.iter().map(|mark| mark.ms)),
+            y: Axis::decades(on_what(scene), errors),
             area,
         };
         chart.text(area[0], area[1] - 12.0, "name", &scene[0].scene);
@@ -134,19 +130,6 @@ fn on_what(scene: &[&Record]) -> &'static str {
     }
 }
 
-/// Whole decades around the values.
-fn decades(title: &'static str, values: impl Iterator<Item = f64>) -> Axis {
-    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-    for value in values.filter(|v| v.is_finite() && *v > 0.0) {
-        (least, most) = (least.min(value), most.max(value));
-    }
-    if most <= 0.0 {
-        (least, most) = (1.0, 1.0);
-    }
-    let (from, to) = (least.log10().floor(), most.log10().ceil());
-    Axis::log(title, 10f64.powf(from), 10f64.powf(to.max(from + 1.0)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::by_scene;
@@ -168,13 +151,5 @@ mod tests {
         assert!(svg.starts_with("<svg xmlns=") && svg.contains("samples 64"), "{svg}");
         // The front goes over the two lookups; paths are dearer and no better.
         assert_eq!(svg.matches("class=\"front\"").count(), 2);
-    }
-
-    #[test]
-    fn axes_are_whole_decades() {
-        let axis = decades("x", [0.02, 3.0, f64::NAN, 0.0].into_iter());
-        assert!((axis.from - 0.01).abs() < 1e-9 && (axis.to - 10.0).abs() < 1e-9);
-        assert!(decades("x", [].into_iter()).to > 1.0);
-        assert_eq!(decades("x", [10.0].into_iter()).ticks.len(), 2);
     }
 }

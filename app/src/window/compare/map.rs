@@ -8,6 +8,7 @@ use burnish_core::measure::error_map::{ErrorMap, Metric, color};
 use burnish_core::picture::Picture;
 use eframe::egui::{self, Align2, Color32, ColorImage, FontId, Mesh, Pos2, Rect, Shape, TextureHandle, pos2, vec2};
 
+use crate::number::short;
 use crate::window::stage::Reading;
 
 /// A traced picture is measured again when it has so many times the samples.
@@ -166,7 +167,7 @@ impl MapDesk {
             (Some(a), Some(b)) => format!(", {b} against {a}"),
             (None, None) => String::new(),
         };
-        let text = format!("mean {}{against}", number(done.map.mean as f32));
+        let text = format!("mean {}{against}", short(done.map.mean));
         Legend { metric, span: Some(done.map.span), text }
     }
 }
@@ -211,8 +212,8 @@ impl Legend {
         for share in [0.0, 0.5, 1.0f32] {
             let value = self.span.map(|span| (first + (1.0 - first) * share) * span);
             let words = match (value, share) {
-                (Some(v), 1.0) if self.metric != Metric::Flip => format!("{}+", number(v)),
-                (Some(v), _) => number(v),
+                (Some(v), 1.0) if self.metric != Metric::Flip => format!("{}+", short(f64::from(v))),
+                (Some(v), _) => short(f64::from(v)),
                 (None, _) => continue,
             };
             let at = pos2(bar.left() + share * bar.width(), bar.bottom() + 2.0);
@@ -235,21 +236,6 @@ impl Legend {
         }
         Shape::mesh(mesh)
     }
-}
-
-/// Three digits whatever the size.
-pub fn number(value: f32) -> String {
-    match value.abs() {
-        0.0 => "0".into(),
-        v if v < 1e-3 => format!("{value:.1e}"),
-        v if v < 0.1 => trimmed(format!("{value:.4}")),
-        v if v < 10.0 => trimmed(format!("{value:.3}")),
-        _ => format!("{value:.0}"),
-    }
-}
-
-fn trimmed(text: String) -> String {
-    text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
 /// The value of a map under a point, with the sides of the picture that it covers.
@@ -329,11 +315,5 @@ mod tests {
             Pictures { reference: source(0.5, Some(1)), picture: small, exposure_ev: 0.0, metric: Metric::Flip };
         until_done(&mut desk, &ctx, &pictures);
         assert!(desk.shown().is_none() && desk.legend(Metric::Flip).text.contains("one size"));
-    }
-
-    #[test]
-    fn numbers_keep_three_digits() {
-        assert_eq!([0.0, 0.0123, 0.5, -2.0, 1234.0].map(number), ["0", "0.0123", "0.5", "-2", "1234"]);
-        assert_eq!(number(2.5e-4), "2.5e-4");
     }
 }

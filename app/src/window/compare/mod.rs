@@ -12,7 +12,7 @@ use super::reference::Reference;
 use super::session::Session;
 use super::stage::{Screen, Stage};
 
-pub use map::{Legend, MapDesk, Pictures, Source, number, value_at};
+pub use map::{Legend, MapDesk, Pictures, Source, value_at};
 pub use sides::{SideScene, Sides};
 
 /// How two pictures are shown.

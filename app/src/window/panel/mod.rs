@@ -1,5 +1,6 @@
 //! The panels, one file each. A panel keeps what only it shows; documents, scenes and files are the session's.
 
+mod chart;
 mod compare;
 mod environment;
 mod history;
@@ -14,6 +15,7 @@ mod viewport;
 use eframe::egui::{self, WidgetText};
 use serde::{Deserialize, Serialize};
 
+use super::chart::Chart;
 use super::compare::Compare;
 use super::preferences::Preferences;
 use super::preparation::Preparation;
@@ -24,6 +26,7 @@ use super::stage::Stage;
 use super::thumbnails::Thumbnails;
 use super::user_presets::UserPresets;
 
+pub use chart::ChartPanel;
 pub use compare::ComparePanel;
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
@@ -49,6 +52,8 @@ pub struct Context<'a> {
     pub preparation: &'a mut Preparation,
     /// Two pictures.
     pub compare: &'a mut Compare,
+    /// Time against error.
+    pub chart: &'a mut Chart,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
     /// The user's presets.
@@ -78,6 +83,8 @@ pub enum Pane {
     Environment,
     /// Snapshots and what differs between two.
     Compare,
+    /// Time against error.
+    Chart,
     /// Reflectance against angle.
     Reflectance,
     /// Steps to undo.
@@ -86,13 +93,14 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Pane; 8] = [
+    pub const ALL: [Pane; 9] = [
         Pane::Viewport,
         Pane::Scene,
         Pane::Material,
         Pane::Presets,
         Pane::Environment,
         Pane::Compare,
+        Pane::Chart,
         Pane::Reflectance,
         Pane::History,
     ];
@@ -106,6 +114,7 @@ impl Pane {
             Pane::Presets => "Presets",
             Pane::Environment => "Environment",
             Pane::Compare => "Compare",
+            Pane::Chart => "Chart",
             Pane::Reflectance => "Reflectance",
             Pane::History => "History",
         }
@@ -129,6 +138,7 @@ pub struct Panels {
     pub presets: PresetsPanel,
     environment: EnvironmentPanel,
     compare: ComparePanel,
+    chart: ChartPanel,
     reflectance: ReflectancePanel,
     history: HistoryPanel,
 }
@@ -142,6 +152,7 @@ impl Panels {
             Pane::Presets => self.presets.ui(ui, context),
             Pane::Environment => self.environment.ui(ui, context),
             Pane::Compare => self.compare.ui(ui, context),
+            Pane::Chart => self.chart.ui(ui, context),
             Pane::Reflectance => self.reflectance.ui(ui, context),
             Pane::History => self.history.ui(ui, context),
         }

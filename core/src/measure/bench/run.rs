@@ -61,9 +61,10 @@ pub fn measure(
         let (_, timer) = timer.ok_or(BenchError::NoTimer(candidate.method))?;
         entries.push(open(timer.as_mut(), index, shot, &candidate.settings)?);
     }
+    let timing = format!("{}: timing {} candidates in turns", shot.name, entries.len());
     while !entries.iter().all(Entry::is_done) {
-        progress(&format!("{}: timing {} candidates in turns", shot.name, entries.len()))?;
         for entry in entries.iter_mut().filter(|entry| !entry.is_done()) {
+            progress(&timing)?;
             entry.calibration.push((rig.calibrate)()?);
             entry.secs.push(entry.frames.frame()?);
         }

@@ -31,7 +31,7 @@ fn method_ui(ui: &mut egui::Ui, session: &mut Session, method: &'static dyn Meth
         let name = name_ui(ui, "Method", chosen != 0, names);
         let picked = choice_ui(ui, "Method", &titles, chosen, controls, Some(&name), method.info().summary);
         if let Some(picked) = picked.and_then(|picked| methods.get(picked)) {
-            session.edit("Lighting method", "", |document| document.set_method(picked.info().id.0));
+            session.edit("Lighting method", "", |document| document.lighting.choose(picked.info().id.0));
         }
     });
     ui.label(RichText::new(method.info().summary).small().weak());

@@ -9,7 +9,8 @@ use eframe::egui::{
 use glam::{UVec2, Vec2, Vec3};
 
 use super::overlay;
-use crate::window::compare::{Compare, CompareView, Legend, Pictures, SideScene, Source, number, value_at};
+use crate::number::short;
+use crate::window::compare::{Compare, CompareView, Legend, Pictures, SideScene, Source, value_at};
 use crate::window::panel::Context;
 use crate::window::reference::{Look, Subject};
 use crate::window::stage::{Screen, Shown};
@@ -267,7 +268,7 @@ fn map_ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>, pictures: Op
         ui.painter_at(rect).image(texture.id(), rect, uv, Color32::WHITE);
         let pointer = ui.input(|input| input.pointer.hover_pos());
         if let Some(value) = pointer.and_then(|pointer| value_at(map, rect, pointer)) {
-            let text = format!("{} {}", map.metric.title(), number(value));
+            let text = format!("{} {}", map.metric.title(), short(f64::from(value)));
             overlay::line_ui(ui, rect, Align2::LEFT_BOTTOM, &text, "The value under the pointer.");
         }
     }

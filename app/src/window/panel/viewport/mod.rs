@@ -192,6 +192,9 @@ impl ViewportPanel {
             let place = compare::side_rect(view, rect, side, ui.pixels_per_point());
             overlay::selection_ui(ui, place, context.session, &frame.camera, &mut self.outlines);
         }
+        // Before what comes and goes: ids count the widgets before them, and a button whose id changes between press and
+        // release hears no click.
+        switch::ui(ui, rect, context);
         let selected = overlay::selection_text(context.session);
         if !selected.is_empty() {
             overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");
@@ -216,7 +219,6 @@ impl ViewportPanel {
             }
             _ => self.readout.clear(),
         }
-        switch::ui(ui, rect, context);
         if let Some(message) = &shown.message {
             overlay::message_ui(ui, rect, message);
         }

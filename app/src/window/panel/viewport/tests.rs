@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::window::chart::Chart;
 use crate::window::compare::Compare;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::preparation::Preparation;
@@ -41,10 +42,21 @@ fn bench() -> Harness<'static, Bench> {
         bench.session.now_secs = ui.input(|input| input.time);
         let Bench { panel, session, preferences, stage, reference, compare, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
-        let preparation = &mut Preparation::default();
+        let (preparation, chart) = (&mut Preparation::default(), &mut Chart::new(None));
         panel.ui(
             ui,
-            &mut Context { session, preferences, stage, reference, preparation, compare, requests, own, thumbnails },
+            &mut Context {
+                session,
+                preferences,
+                stage,
+                reference,
+                preparation,
+                compare,
+                chart,
+                requests,
+                own,
+                thumbnails,
+            },
         );
     };
     let mut harness = Harness::builder().with_size(vec2(600.0, 400.0)).build_ui_state(show, bench);

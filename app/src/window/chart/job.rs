@@ -1,0 +1,126 @@
+//! The measurement, on a thread and a device of its own: the window's picture goes on, and nothing that fails here is
+//! noticed there.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use burnish_core::job::{Handle, Job};
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, Record, Shot};
+use burnish_core::reference::Control;
+use burnish_render::Gpu;
+use eframe::egui;
+
+use crate::rig;
+
+/// What is measured.
+pub struct Order {
+    /// What is looked at.
+    pub shot: Shot,
+    /// What is compared.
+    pub candidates: Vec<Candidate>,
+    /// Paths through a pixel of the reference.
+    pub samples: u32,
+    /// What is known already.
+    pub cache: Cache,
+}
+
+/// Records of all candidates, or why there are none.
+pub type Measured = Result<Vec<Record>, BenchError>;
+
+/// What is going on, for people.
+#[derive(Clone, Default)]
+pub struct Words(Arc<Mutex<String>>);
+
+impl Words {
+    /// The newest.
+    pub fn get(&self) -> String {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// True where they are new.
+    fn set(&self, words: String) -> bool {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = *held != words;
+        *held = words;
+        new
+    }
+}
+
+/// Starts the thread; `ctx` is repainted whenever there is something new to tell.
+pub fn start(order: Order, ctx: &egui::Context) -> (Job<Measured>, Words) {
+    let words = Words::default();
+    let (told, waker, ctx) = (words.clone(), ctx.clone(), ctx.clone());
+    let tell = move |text: String| {
+        if told.set(text) {
+            ctx.request_repaint();
+        }
+    };
+    let work = move |handle: &Handle| measure(&order, handle, &tell);
+    (Job::spawn("Measuring", move || waker.request_repaint(), work), words)
+}
+
+fn measure(order: &Order, handle: &Handle, tell: &dyn Fn(String)) -> Measured {
+    let Order { shot, candidates, samples, cache } = order;
+    let control = Control::of_job(handle);
+    tell("opening the graphics device".into());
+    let gpu = Gpu::new().map_err(words)?;
+    let mut rig = rig::rig(&gpu, &control)?;
+    let truth = {
+        // One core is left for the window. Timing has all: the command line measures so, and its results are shared.
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build().map_err(words)?;
+        let mut halves = Halves::default();
+        rig::truth(shot, *samples, (cache, &control), Some(&pool), || {
+            let done = halves.done(control.progress());
+            tell(format!("tracing the reference, {samples} paths a pixel: {:.0} %", 100.0 * done));
+        })?
+    };
+    let name = format!("{}: ", shot.name);
+    bench::measure(shot, &truth, candidates, &mut rig, cache, &mut |text| {
+        if handle.is_cancelled() {
+            return Err(BenchError::Cancelled);
+        }
+        tell(text.strip_prefix(&name).unwrap_or(text).into());
+        Ok(())
+    })
+}
+
+fn words(error: impl std::fmt::Display) -> BenchError {
+    BenchError::Method(error.to_string())
+}
+
+/// The progress of two halves that are traced one after the other, each from 0 to 1.
+#[derive(Default)]
+struct Halves {
+    last: f32,
+    second: bool,
+}
+
+impl Halves {
+    /// Fraction of both.
+    fn done(&mut self, fraction: f32) -> f32 {
+        self.second |= fraction + 0.5 < self.last;
+        self.last = fraction;
+        0.5 * (fraction + if self.second { 1.0 } else { 0.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_halves_are_one_progress() {
+        let mut halves = Halves::default();
+        let told: Vec<f32> = [0.0, 0.4, 0.98, 0.02, 0.5, 1.0].map(|fraction| halves.done(fraction)).into();
+        assert!(told.windows(2).all(|pair| pair[0] < pair[1]), "{told:?}");
+        assert_eq!(told.last(), Some(&1.0));
+    }
+
+    #[test]
+    fn words_are_new_once() {
+        let words = Words::default();
+        assert!(words.set("one".into()) && !words.set("one".into()) && words.set("two".into()));
+        assert_eq!(words.get(), "two");
+    }
+}

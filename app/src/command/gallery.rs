@@ -5,14 +5,19 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use burnish_core::color::tone::ToneMap;
+use burnish_core::export::gltf::{self, Encoded};
+use burnish_core::file::{write_atomic, write_picture};
 use burnish_core::param::ParamSpec;
+use burnish_core::picture::Picture;
 use burnish_core::reference::MAX_SAMPLES;
+use burnish_core::scene::Scene;
 use burnish_core::scene::gallery::{self, GalleryScene};
 use glam::UVec2;
 use serde_json::{Value, json};
 
 use super::{render, write_json};
-use crate::failure::{Exit, Failure};
+use crate::failure::{Exit, Failure, printable};
 use crate::value;
 
 #[derive(clap::Args)]
@@ -31,6 +36,21 @@ enum Action {
     },
     /// Render scenes by the reference, one picture each
     Render(RenderArgs),
+    /// Write scenes as NAME.glb, with their environments as NAME.exr, and tell what glTF cannot hold
+    Export(ExportArgs),
+}
+
+#[derive(clap::Args)]
+struct ExportArgs {
+    /// Scenes: NAME[?key=value&...]
+    #[arg(value_name = "NAME", required_unless_present = "all", conflicts_with = "all")]
+    names: Vec<String>,
+    /// Every scene, with its default settings
+    #[arg(long)]
+    all: bool,
+    /// Folder for the files; made where it is missing
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
 }
 
 #[derive(clap::Args)]
@@ -60,6 +80,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         }
         Action::List { json: false } => list(out),
         Action::Render(args) => pictures(&args, out, err),
+        Action::Export(args) => models(&args, out),
     }
 }
 
@@ -101,27 +122,9 @@ fn default_text(spec: &ParamSpec) -> String {
 }
 
 fn pictures(args: &RenderArgs, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    let names: Vec<String> = match args.all {
-        true => gallery::list().iter().map(|scene| scene.name.to_string()).collect(),
-        false => args.names.clone(),
-    };
-    // Everything that can be refused is, before the first picture is traced.
-    let mut stems = BTreeSet::new();
-    for name in &names {
-        gallery::open(name).map_err(|e| Failure::input(Path::new(name), e))?;
-        if !stems.insert(stem(name)) {
-            return Err(Failure::usage(format!(
-                "{name}: its picture is that of another scene of the list; leave one out"
-            )));
-        }
-    }
-    let folder =
-        |e: std::io::Error| Failure::resources(format!("{}: cannot be made a folder: {e}", args.out.display()));
-    fs::create_dir_all(&args.out).map_err(folder)?;
-    for name in &names {
-        let plain = name.strip_prefix("gallery:").unwrap_or(name);
-        let file = args.out.join(stem(name) + ".png");
-        let exit = render::reference_picture(&format!("gallery:{plain}"), args.size, args.samples, file, out, err)?;
+    for (scene, _) in scenes(&args.names, args.all, &args.out)? {
+        let file = args.out.join(stem(&scene) + ".png");
+        let exit = render::reference_picture(&format!("gallery:{scene}"), args.size, args.samples, file, out, err)?;
         if exit != Exit::Ok {
             return Ok(exit);
         }
@@ -129,8 +132,54 @@ fn pictures(args: &RenderArgs, out: &mut dyn Write, err: &mut dyn Write) -> Resu
     Ok(Exit::Ok)
 }
 
+fn models(args: &ExportArgs, out: &mut dyn Write) -> Result<Exit, Failure> {
+    for (name, scene) in scenes(&args.names, args.all, &args.out)? {
+        let Encoded { glb, report } = gltf::encode(&scene).map_err(Failure::resources)?;
+        for note in &report.notes {
+            let line = format!("{name}: {}: {}: {}", note.element, note.loss.word(), note.what);
+            writeln!(out, "{}", printable(&line))?;
+        }
+        let file = args.out.join(stem(&name) + ".glb");
+        write_atomic(&file, &glb).map_err(Failure::resources)?;
+        writeln!(out, "wrote {}", file.display())?;
+        if let Some(map) = &scene.environment {
+            let file = args.out.join(stem(&name) + ".exr");
+            let texels = map.texels.iter().map(|radiance| (map.strength * *radiance).extend(1.0)).collect();
+            let picture = Picture { width: map.width, height: map.height, texels };
+            write_picture(&picture, &file, ToneMap::None, 0.0).map_err(Failure::resources)?;
+            let degrees = map.rotation.to_degrees();
+            let turned = if degrees == 0.0 { String::new() } else { format!(", to be turned by {degrees} degrees") };
+            writeln!(out, "wrote {}{turned}", file.display())?;
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+/// The scenes that are asked for, without the word before their names. Everything that can be refused is, before the
+/// first is worked on.
+fn scenes(names: &[String], all: bool, folder: &Path) -> Result<Vec<(String, Scene)>, Failure> {
+    let names: Vec<String> = match all {
+        true => gallery::list().iter().map(|scene| scene.name.to_string()).collect(),
+        false => names.to_vec(),
+    };
+    let mut stems = BTreeSet::new();
+    let mut list = Vec::new();
+    for name in names {
+        let plain = name.strip_prefix("gallery:").unwrap_or(&name).to_string();
+        let scene = gallery::open(&plain).map_err(|e| Failure::input(Path::new(&name), e))?;
+        if !stems.insert(stem(&plain)) {
+            return Err(Failure::usage(format!(
+                "{name}: its file is that of another scene of the list; leave one out"
+            )));
+        }
+        list.push((plain, scene));
+    }
+    let failure = |e: std::io::Error| Failure::resources(format!("{}: cannot be made a folder: {e}", folder.display()));
+    fs::create_dir_all(folder).map_err(failure)?;
+    Ok(list)
+}
+
 /// Name of a file for a scene: its name, then its settings with hyphens between.
 fn stem(name: &str) -> String {
-    let plain = name.strip_prefix("gallery:").unwrap_or(name);
-    plain.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect()
+    name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect()
 }

@@ -21,12 +21,22 @@ pub fn exr(name: &str, width: u32, height: u32, channels: Vec<(&str, Vec<f32>)>)
 
 /// A PNG of 8-bit RGB texels.
 pub fn png(name: &str, width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, FileError> {
+    encoded(name, (width, height), (ColorType::Rgb, BitDepth::Eight), rgb)
+}
+
+/// A PNG of RGBA texels of 8 bits, or of 16 with the high byte first.
+pub fn png_rgba(name: &str, width: u32, height: u32, texels: &[u8], is_deep: bool) -> Result<Vec<u8>, FileError> {
+    let depth = if is_deep { BitDepth::Sixteen } else { BitDepth::Eight };
+    encoded(name, (width, height), (ColorType::Rgba, depth), texels)
+}
+
+fn encoded(name: &str, size: (u32, u32), of: (ColorType, BitDepth), texels: &[u8]) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
+    let mut encoder = Encoder::new(&mut bytes, size.0, size.1);
+    encoder.set_color(of.0);
+    encoder.set_depth(of.1);
     let mut writer = encoder.write_header().map_err(|e| refused(name, &e))?;
-    writer.write_image_data(rgb).map_err(|e| refused(name, &e))?;
+    writer.write_image_data(texels).map_err(|e| refused(name, &e))?;
     writer.finish().map_err(|e| refused(name, &e))?;
     Ok(bytes)
 }

@@ -2,6 +2,7 @@
 //!
 //! One folder per target. Names of files and elements are made here, never taken from a scene as they are.
 
+pub mod gltf;
 pub mod mitsuba;
 
 mod image;

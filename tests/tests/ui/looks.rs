@@ -2,11 +2,13 @@
 
 use burnish::window::{Command, CompareView, Legend, Menu, Pane, Request, TABLE};
 use burnish_core::document::Side;
-use burnish_core::measure::error_map::Metric;
+use burnish_core::measure::error_map::{ErrorMap, Metric};
 use burnish_core::param::ParamValue;
+use burnish_core::picture::Picture;
 use burnish_tests::{Need, repository, trial};
-use eframe::egui::{Rect, pos2};
+use eframe::egui::{Color32, ColorImage, Id, Rect, TextureOptions, pos2, vec2};
 use egui_kittest::SnapshotOptions;
+use glam::{Vec3, Vec4};
 use libtest_mimic::Trial;
 
 use super::bench::{Bench, Setup};
@@ -24,6 +26,7 @@ pub fn trials() -> Vec<Trial> {
         trial("a_wipe_with_its_list_looks_as_accepted_in_both_themes", gpu, wipe_with_list),
         trial("a_chart_looks_as_accepted_in_both_themes", gpu, chart),
         trial("legends_of_error_maps_look_as_accepted", gpu, legends),
+        trial("error_maps_under_their_legends_look_as_accepted", gpu, error_maps),
         trial("every_menu_shows_its_commands", &[], menus),
     ]
 }
@@ -187,6 +190,50 @@ fn legends() {
     let folder = repository().join("tests/tests/ui/snapshots");
     let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);
     harness.snapshot_options("error_map_legends", &options);
+    let faults: Vec<String> = harness.take_snapshot_results().into_inner().iter().map(ToString::to_string).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// A ball with a highlight of radiance `peak` that lies `shift` pixels further to the right.
+fn ball(peak: f32, shift: f32) -> Picture {
+    const SIZE: (u32, u32) = (280, 150);
+    let mut picture = Picture::filled(SIZE.0, SIZE.1, Vec4::new(0.02, 0.03, 0.05, 1.0));
+    for (i, texel) in picture.texels.iter_mut().enumerate() {
+        let (x, y) = ((i as u32 % SIZE.0) as f32 - 140.0, (i as u32 / SIZE.0) as f32 - 75.0);
+        let distance2 = (x * x + y * y) / (64.0 * 64.0);
+        if distance2 < 1.0 {
+            let height = (1.0 - distance2).sqrt();
+            let (u, v) = ((x + 24.0 - shift) / 20.0, (y + 22.0) / 20.0);
+            let gloss = peak / (1.0 + u * u + v * v);
+            *texel = (Vec3::new(0.5, 0.33, 0.12) * height + Vec3::new(1.0, 0.8, 0.45) * gloss).extend(1.0);
+        }
+    }
+    picture
+}
+
+fn error_maps() {
+    let (reference, picture) = (ball(0.6, 0.0), ball(0.5, 4.0));
+    let show = move |ui: &mut eframe::egui::Ui| {
+        for (row, metric) in Metric::ALL.into_iter().enumerate() {
+            let map = ErrorMap::new(metric, &reference, &picture, 0.0).expect("of one size");
+            let size = [map.width as usize, map.height as usize];
+            let image = ColorImage::from_rgb(size, map.colors().as_flattened());
+            let texture = ui.ctx().load_texture(metric.title(), image, TextureOptions::NEAREST);
+            let place = Rect::from_min_size(pos2(8.0, 8.0 + 226.0 * row as f32), vec2(size[0] as f32, size[1] as f32));
+            ui.painter().image(texture.id(), place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+            // A texture lives as long as its handle.
+            ui.data_mut(|data| data.insert_temp(Id::unique(metric.title()), texture));
+            let text = format!("mean {:.4}", map.mean);
+            let legend = Legend { metric, span: Some(map.span), text };
+            legend.ui(ui, Rect::from_min_size(place.left_bottom() + vec2(0.0, 6.0), Legend::SIZE));
+        }
+    };
+    let height = 226.0 * Metric::ALL.len() as f32 + 8.0;
+    let mut harness = egui_kittest::Harness::builder().with_size([300.0, height]).wgpu().build_ui(show);
+    harness.run_steps(3);
+    let folder = repository().join("tests/tests/ui/snapshots");
+    let options = SnapshotOptions::new().max_failed_pixels(0).output_path(folder);
+    harness.snapshot_options("error_maps", &options);
     let faults: Vec<String> = harness.take_snapshot_results().into_inner().iter().map(ToString::to_string).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

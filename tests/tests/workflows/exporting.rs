@@ -4,7 +4,7 @@ use std::fs;
 
 use burnish_tests::scratch_folder;
 
-use super::{OK, USAGE, burnish, text};
+use super::{INPUT, OK, RESOURCES, USAGE, burnish, text};
 
 pub fn a_scene_is_exported_with_a_report() {
     let folder = scratch_folder("export").join("made");
@@ -35,4 +35,20 @@ pub fn a_scene_is_exported_with_a_report() {
     assert!(refused.err.contains("choose another folder"), "{}", refused.err);
     assert_eq!(fs::read_to_string(folder.join("scene.xml")).expect("the scene"), "<scene/>");
     assert_eq!(burnish(&["export", "--target", "povray", "--out", text(&folder)]).exit, USAGE);
+}
+
+pub fn scenes_of_the_gallery_are_written_as_glb() {
+    let folder = scratch_folder("gallery-export");
+    let told = burnish(&["gallery", "export", "ball?material=Cu", "gallery:wall", "--out", text(&folder)]).succeeded();
+    assert!(told.out.contains("approximated: the curve of Cu") && told.out.contains("wrote"), "{}", told.out);
+    for name in ["ball-material-Cu", "wall"] {
+        let glb = folder.join(format!("{name}.glb"));
+        let info = burnish(&["info", text(&glb)]).succeeded();
+        assert!(info.out.contains("triangles"), "{}", info.out);
+    }
+    assert!(folder.join("wall.exr").is_file());
+    burnish(&["gallery", "export", "wal", "--out", text(&folder)]).failed(INPUT, &["wal"]);
+    burnish(&["gallery", "export", "wall", "wall", "--out", text(&folder)]).failed(USAGE, &["leave one out"]);
+    let file = folder.join("wall.glb");
+    burnish(&["gallery", "export", "wall", "--out", text(&file)]).failed(RESOURCES, &["cannot be made a folder"]);
 }

@@ -51,6 +51,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("info describes a document as it was edited", &[], documents::info_describes_a_document),
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
+        trial("scenes of the gallery are written as glb", &[], exporting::scenes_of_the_gallery_are_written_as_glb),
         trial("a full disk is exit code 4", &[], a_full_disk),
         trial(
             "a chart is the same twice and kept in between",

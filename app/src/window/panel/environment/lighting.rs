@@ -78,11 +78,7 @@ fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
                 .on_hover_text("Memory, and the time that it took to make or read.");
         }
         match state {
-            State::Working(_) => {
-                if ui.small_button("Cancel").clicked() {
-                    context.preparation.cancel();
-                }
-            }
+            State::Working(_) if ui.small_button("Cancel").clicked() => context.preparation.cancel(),
             State::Stale | State::Missing if ui.small_button("Prepare again").clicked() => {
                 context.preparation.again(ui.ctx());
             }

@@ -3,7 +3,7 @@
 //! After an edit another thread tells by hash whether the preparation is still that of the scene. One that was quick is
 //! made anew by itself; else it stays in use with a badge until someone asks for it.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
 use burnish_core::job::{Handle, Job, Outcome};
@@ -16,6 +16,9 @@ use eframe::egui;
 
 /// Time of a preparation that nobody minds to be made after every edit.
 const QUICK: Duration = Duration::from_secs(1);
+
+/// Of every method that needs none: always the same, so that nobody takes it for another.
+static NOTHING: LazyLock<Arc<Prepared>> = LazyLock::new(|| Arc::new(Prepared::nothing()));
 
 /// How the preparation stands to the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,7 +201,7 @@ impl Preparation {
     /// What there is for a method, perhaps stale; a method that needs none has an empty one.
     pub fn prepared(&self, method: &dyn Method) -> Option<Arc<Prepared>> {
         if method.info().reads == Reads::NOTHING {
-            return Some(Arc::new(Prepared::nothing()));
+            return Some(NOTHING.clone());
         }
         self.held.as_ref().filter(|held| held.method == method.info().id).map(|held| held.prepared.clone())
     }
@@ -293,8 +296,9 @@ mod tests {
         assert!(!Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
         // Back again: stale, not lost.
         assert_eq!(settle(&mut preparation, &scene), State::Stale);
-        // Another method has none of it.
-        assert!(preparation.prepared(&burnish_core::lighting::classical::Classical).unwrap().is_nothing());
+        // Another method has none of it, and always the same nothing.
+        let nothing = || preparation.prepared(&burnish_core::lighting::classical::Classical).unwrap();
+        assert!(nothing().is_nothing() && Arc::ptr_eq(&nothing(), &nothing()));
     }
 
     #[test]

@@ -182,6 +182,11 @@ fn in_the_window() {
         "ambient; no lamps; environment: approximate; indirect diffuse: nothing; indirect glossy: nothing",
     );
     assert!(bench.text().contains("\"method\": \"ambient\""), "it is saved: {}", bench.text());
+    // It refines while nothing changes: a picture of many samples was not begun anew.
+    bench.until("it is drawn", |w| w.reference().shown().is_some_and(|look| look.samples >= 8));
+    bench.until_shown(
+        "ambient; no lamps; environment: approximate; indirect diffuse: nothing; indirect glossy: nothing",
+    );
     // Its settings wait while another is chosen.
     bench.click_role(Role::ComboBox, "Method");
     bench.click("Classical");

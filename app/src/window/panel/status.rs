@@ -29,9 +29,10 @@ impl StatusLine {
                 item_ui(ui, &text, hover);
             }
             item_ui(ui, &triangles(context.session.scene()), "Triangles of the visible objects.");
-            let filled = match context.reference.shown() {
-                Some(_) => "reference; all light: path traced".into(),
-                None => filled_in(context.session),
+            let traced = context.reference.is_on() && context.reference.shown().is_some();
+            let filled = match traced {
+                true => "reference; all light: path traced".into(),
+                false => filled_in(context.session),
             };
             item_ui(ui, &filled, FILLED_HELP);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -72,3 +72,80 @@ impl<'a> Drawing<'a> {
         trace_with(film, samples, control, |pixel, index| self.sample(view, pixel, index))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{UVec2, Vec3};
+
+    use super::*;
+    use crate::lighting::{Coverage, MethodId, MethodInfo, Reads};
+    use crate::reference::{Options, SurfacePoint, trace};
+    use crate::scene::{Environment, Light, LightKind, gallery};
+
+    /// Leaves all light to the frame.
+    #[derive(Debug)]
+    struct Nothing;
+
+    static INFO: MethodInfo = MethodInfo {
+        id: MethodId("nothing"),
+        title: "Nothing",
+        summary: "",
+        params: &[],
+        coverage: Coverage {
+            lamps: Cover::None,
+            environment: Cover::None,
+            indirect_diffuse: Cover::None,
+            indirect_glossy: Cover::None,
+            emission: Cover::None,
+        },
+        reads: Reads::NOTHING,
+        revision: 1,
+    };
+
+    impl Method for Nothing {
+        fn info(&self) -> &'static MethodInfo {
+            &INFO
+        }
+
+        fn points(&self) -> Option<&dyn ShadePoint> {
+            Some(self)
+        }
+    }
+
+    impl ShadePoint for Nothing {
+        fn radiance(&self, _: &SurfacePoint<'_>, _: &Prepared, _: &Settings, _: [f32; 4]) -> Vec3 {
+            Vec3::ZERO
+        }
+    }
+
+    #[test]
+    fn what_the_frame_fills_in_is_the_direct_light_of_a_convex_body() {
+        let mut scene = gallery::open("ball?material=Cu&roughness=0.35").unwrap();
+        let texels = (0..32 * 16).map(|i| Vec3::new(0.2, 0.3, 0.4) * (1.0 + (i % 32) as f32 / 8.0)).collect();
+        scene.environment = Some(Arc::new(Environment::new("slope", 32, 16, texels)));
+        scene.materials[0].emission = Vec3::new(0.05, 0.1, 0.2);
+        scene.materials[0].coat = 0.5;
+        scene.lights.push(Light {
+            name: "lamp".into(),
+            position: Vec3::new(2.0, 2.0, 2.0),
+            direction: Vec3::NEG_Y,
+            intensity: Vec3::splat(9.0),
+            range: f32::INFINITY,
+            kind: LightKind::Point,
+        });
+        let world = World::new(&Arc::new(scene), Options { bounces: 1, ..Options::default() });
+        let camera = world.scene().cameras[0].clone();
+        let view = View { camera, size: UVec2::new(24, 16), seed: 1 };
+        let (prepared, settings) = (Prepared::nothing(), Settings::new(&[]));
+        let drawing = Drawing::new(&Nothing, &world, &prepared, &settings).unwrap();
+        let [mut drawn, mut traced] = [Film::new(view.size), Film::new(view.size)];
+        assert_eq!(drawing.draw(&view, &mut drawn, 256, &Control::default()), Pass::Whole);
+        assert_eq!(trace(&world, &View { seed: 2, ..view }, &mut traced, 256, &Control::default()), Pass::Whole);
+        let mean = |film: &Film| film.picture().texels.iter().map(|t| t.truncate()).sum::<Vec3>() / (24.0 * 16.0);
+        let ratio = mean(&drawn) / mean(&traced);
+        assert!((ratio - 1.0).abs().max_element() < 0.01, "{ratio}");
+        assert_eq!((drawn.rejected(), traced.rejected()), (0, 0));
+    }
+}

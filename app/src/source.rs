@@ -31,6 +31,8 @@ pub struct Opened {
     pub from_gallery: bool,
     /// The document that describes the scene, if it was one: its view and lighting count where no option says else.
     pub document: Option<Document>,
+    /// Keys of its objects, in the order of the scene's instances.
+    pub object_keys: Vec<String>,
     /// Files of the document that something stands in for.
     pub missing: Vec<Missing>,
 }
@@ -50,7 +52,14 @@ impl SceneArg {
 pub fn open(scene: &OsStr) -> Result<Opened, Failure> {
     if let Some(name) = gallery_name(scene) {
         let scene = gallery::open(name).map_err(|e| Failure::input(Path::new(scene), e))?;
-        return Ok(Opened { scene, notices: Vec::new(), from_gallery: true, document: None, missing: Vec::new() });
+        return Ok(Opened {
+            scene,
+            notices: Vec::new(),
+            from_gallery: true,
+            document: None,
+            object_keys: Vec::new(),
+            missing: Vec::new(),
+        });
     }
     let path = Path::new(scene);
     if document::is_document(path) {
@@ -59,7 +68,7 @@ pub fn open(scene: &OsStr) -> Result<Opened, Failure> {
     let imported = import::load_scene(path, &ImportOptions::default()).map_err(|e| Failure::input(path, e))?;
     let notices = imported.notices.iter().map(ToString::to_string).collect();
     let scene = imported.scene;
-    Ok(Opened { scene, notices, from_gallery: false, document: None, missing: Vec::new() })
+    Ok(Opened { scene, notices, from_gallery: false, document: None, object_keys: Vec::new(), missing: Vec::new() })
 }
 
 fn open_document(path: &Path) -> Result<Opened, Failure> {
@@ -67,9 +76,10 @@ fn open_document(path: &Path) -> Result<Opened, Failure> {
     let document::Opened { document, sources, missing, mut notices } = document::reload(document, &Sources::default());
     let resolved = resolve(&document, &sources, &mut Curves::default());
     notices.extend(resolved.notices);
+    let object_keys = resolved.object_keys;
     // Nothing else holds the scene.
     let scene = Arc::unwrap_or_clone(resolved.scene);
-    Ok(Opened { scene, notices, from_gallery: false, document: Some(document), missing })
+    Ok(Opened { scene, notices, from_gallery: false, document: Some(document), object_keys, missing })
 }
 
 impl Opened {

@@ -76,12 +76,6 @@ impl Pick {
 #[derive(Clone, Copy)]
 pub struct MethodChoice(pub &'static dyn Method);
 
-impl MethodChoice {
-    pub fn id(self) -> &'static str {
-        self.0.info().id.0
-    }
-}
-
 /// Reads a [`MethodChoice`].
 pub fn method(id: &str) -> Result<MethodChoice, String> {
     lighting::method::find(&lighting::methods(), id).map(MethodChoice).map_err(|e| e.to_string())

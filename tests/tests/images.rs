@@ -11,6 +11,8 @@ mod environment;
 mod losses;
 #[path = "images/plate.rs"]
 mod plate;
+#[path = "images/processor.rs"]
+mod processor;
 #[path = "images/viewport.rs"]
 mod viewport;
 
@@ -47,6 +49,7 @@ fn main() {
     trials.extend(environment::trials());
     trials.extend(losses::trials());
     trials.extend(plate::trials());
+    trials.extend(processor::trials());
     trials.extend(viewport::trials());
     libtest_mimic::run(&arguments, trials).exit();
 }

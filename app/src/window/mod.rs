@@ -17,6 +17,7 @@ mod palette;
 mod panel;
 mod preferences;
 mod preparation;
+mod preparations;
 mod reference;
 mod request;
 mod session;

@@ -94,8 +94,10 @@ impl Subject {
         if kept.is_none() && !anew {
             return Found::Other;
         }
-        let made =
-            kept.map_or_else(|| store.prepare(*method, &World::new(scene, Options::new(settings)), settings, job), Ok);
+        let made = kept.map_or_else(
+            || store.prepare(&key, *method, &World::new(scene, Options::new(settings)), settings, job),
+            Ok,
+        );
         match made {
             Ok(prepared) => {
                 let prepared = Arc::new(prepared);
@@ -225,7 +227,7 @@ impl Preparation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use burnish_core::lighting::{Cover, Coverage, MethodInfo};
+    use burnish_core::lighting::{Coverage, MethodInfo};
     use burnish_core::scene::gallery;
 
     /// Counts lamps, unless there are none.
@@ -237,13 +239,7 @@ mod tests {
         title: "Lamps",
         summary: "",
         params: &[],
-        coverage: Coverage {
-            lamps: Cover::None,
-            environment: Cover::None,
-            indirect_diffuse: Cover::None,
-            indirect_glossy: Cover::None,
-            emission: Cover::None,
-        },
+        coverage: Coverage::NONE,
         reads: Reads { lights: true, ..Reads::NOTHING },
         revision: 1,
     };
@@ -297,7 +293,7 @@ mod tests {
         // Back again: stale, not lost.
         assert_eq!(settle(&mut preparation, &scene), State::Stale);
         // Another method has none of it, and always the same nothing.
-        let nothing = || preparation.prepared(&burnish_core::lighting::classical::Classical).unwrap();
+        let nothing = || preparation.prepared(&burnish_core::reference::Reference).unwrap();
         assert!(nothing().is_nothing() && Arc::ptr_eq(&nothing(), &nothing()));
     }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{Curves, Document, History, MaterialEntry, Missing, Opened, Resolved, Sources, resolve};
+use burnish_core::lighting::Layers;
 use burnish_core::scene::Scene;
 
 /// What the next command is about.
@@ -81,6 +82,11 @@ impl Session {
     /// The scene with what stands in for something else.
     pub fn resolved(&self) -> &Resolved {
         &self.resolved
+    }
+
+    /// What lights the scene.
+    pub fn layers(&self) -> Layers {
+        self.document().lighting.layers(&self.resolved.object_keys)
     }
 
     /// The files of the document.

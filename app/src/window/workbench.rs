@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use burnish_core::document;
-use burnish_core::lighting::Store;
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
 use egui_tiles::Tree;
 
@@ -14,7 +13,7 @@ use super::files::{Files, Folders, is_table};
 use super::palette::{Chosen, Palette};
 use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
 use super::preferences::Preferences;
-use super::preparation::Preparation;
+use super::preparations::Preparations;
 use super::reference::Reference;
 use super::request::{Request, Requests};
 use super::session::Session;
@@ -48,7 +47,7 @@ pub struct Workbench {
     preferences: Preferences,
     stage: Stage,
     reference: Reference,
-    preparation: Preparation,
+    preparations: Preparations,
     compare: Compare,
     chart: Chart,
     panels: Panels,
@@ -78,7 +77,7 @@ impl Workbench {
         let opened = made.or_else(|| document::open(document::DEFAULT_SCENE).ok());
         let opened = opened.unwrap_or_else(|| document::reload(Default::default(), &Default::default()));
         let (files, preferences) = Files::new(&options, &stage, ctx);
-        let store = files.folders().map_or_else(Store::none, |folders| Store::within(&folders.prepared()));
+        let store = files.prepared_store();
         theme::install(ctx);
         theme::apply(ctx, &preferences);
         Workbench {
@@ -88,8 +87,8 @@ impl Workbench {
             preferences,
             stage,
             reference: Reference::default(),
-            preparation: Preparation::new(store),
-            compare: Compare::default(),
+            preparations: Preparations::new(store.clone()),
+            compare: Compare::new(store),
             chart: Chart::new(files.folders().map(Folders::bench)),
             panels: Panels::default(),
             start: start.then(StartPage::default),
@@ -136,7 +135,7 @@ impl Workbench {
             || self.tables.is_busy()
             || self.thumbnails.is_drawing()
             || self.compare.is_busy()
-            || self.preparation.is_busy()
+            || self.preparations.is_busy()
             || self.chart.is_busy()
     }
 
@@ -221,7 +220,7 @@ impl Workbench {
             preferences,
             stage,
             reference,
-            preparation,
+            preparations,
             compare,
             chart,
             panels,
@@ -235,8 +234,7 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
-        let lighting = &session.document().lighting;
-        preparation.follow(lighting.live_method(), lighting.settings(), session.scene(), ui.ctx());
+        preparations.follow(&session.layers(), session.scene(), ui.ctx());
         let rests = reference.shown().is_some()
             || stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
         if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
@@ -249,7 +247,7 @@ impl Workbench {
             }
         }
         let mut context =
-            Context { session, preferences, stage, reference, preparation, compare, chart, requests, own, thumbnails };
+            Context { session, preferences, stage, reference, preparations, compare, chart, requests, own, thumbnails };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);

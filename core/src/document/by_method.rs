@@ -1,11 +1,13 @@
-//! The choice of a lighting method, and the document as a method with certain settings shows it, as a side of the comparison.
+//! The choice of a lighting method, of others for some objects, and the document as a method with certain settings shows it, as a side of the comparison.
 
 use std::sync::Arc;
 
+use serde_json::Map;
+
 use super::edit::store;
-use super::{Document, LightingEntry, SHARED_SETTINGS, Side};
-use crate::lighting::MethodId;
-use crate::param::{self, Settings};
+use super::{Document, LightingEntry, OverrideEntry, SHARED_SETTINGS, Side, read_settings};
+use crate::lighting::{self, Layer, Layers, Method, MethodId};
+use crate::param::{self, ParamError, ParamSpec, ParamValue, Settings};
 use crate::reference;
 
 impl LightingEntry {
@@ -37,10 +39,79 @@ impl LightingEntry {
             }
             let stored = if of_reference { &mut entry.reference } else { &mut entry.settings };
             // The value is one that the setting accepted.
-            let _ = store(&[*spec], stored, spec.key, value);
+            let _ = store(spec, stored, value);
         }
         entry
     }
+}
+
+impl LightingEntry {
+    /// Lets another method light an object, by its key; `None` leaves it to the method of the scene.
+    pub fn override_object(&mut self, key: &str, method: Option<&str>) {
+        match method {
+            None => _ = self.overrides.remove(key),
+            Some(id) if self.overrides.get(key).is_some_and(|entry| entry.method == id) => {}
+            Some(id) => {
+                let entry = OverrideEntry { method: id.into(), settings: Map::new(), other: Map::new() };
+                self.overrides.insert(key.into(), entry);
+            }
+        }
+    }
+
+    /// What lights the objects, of which `object_keys` has the keys in the order of the scene's instances. Overrides of
+    /// unknown objects, and by methods that this version cannot mix in, count as none.
+    pub fn layers(&self, object_keys: &[String]) -> Layers {
+        let mut layers = Layers::of(self.live_method(), self.settings());
+        for (key, entry) in &self.overrides {
+            let instance = object_keys.iter().position(|known| known == key);
+            if let (Some(instance), Some(method)) = (instance, entry.mixed_method()) {
+                layers = layers.with(Layer { method, settings: entry.settings(), instances: vec![instance] });
+            }
+        }
+        layers
+    }
+
+    /// The settings of the world that [`LightingEntry::layers`] are drawn in: those of the reference where it lights an
+    /// object, else those of the method.
+    pub fn world_settings(&self) -> Settings {
+        let by_paths = self.overrides.values().any(|entry| entry.method == reference::ID);
+        if by_paths { self.reference_settings() } else { self.settings() }
+    }
+}
+
+impl OverrideEntry {
+    /// The method, if it can light single objects: it draws on the processor.
+    pub fn mixed_method(&self) -> Option<&'static dyn Method> {
+        mixed_methods().find(|method| method.info().id.0 == self.method)
+    }
+
+    /// The settings that count for one object: not those of the whole scene.
+    pub fn specs(&self) -> impl Iterator<Item = &'static ParamSpec> + use<> {
+        let method = self.mixed_method().filter(|method| method.info().id.0 != reference::ID);
+        let params = method.map_or(&[][..], |method| method.info().params);
+        params.iter().filter(|spec| !SHARED_SETTINGS.contains(&spec.key) && !spec.key.starts_with("fresnel"))
+    }
+
+    /// Settings of the method, defaults where nothing or nonsense is stored.
+    pub fn settings(&self) -> Settings {
+        read_settings(self.mixed_method().map_or(&[], |method| method.info().params), &self.settings)
+    }
+
+    /// Sets a setting of [`OverrideEntry::specs`].
+    pub fn set(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        let spec = self.specs().find(|spec| spec.key == key);
+        let unknown = || {
+            let known = self.specs().map(|spec| spec.key).collect::<Vec<_>>().join(", ");
+            ParamError::Unknown { key: key.into(), known }
+        };
+        store(spec.ok_or_else(unknown)?, &mut self.settings, value)
+    }
+}
+
+/// The methods that can light single objects.
+pub fn mixed_methods() -> impl Iterator<Item = &'static dyn Method> {
+    let all = lighting::methods().into_iter();
+    all.filter(|method| method.points().is_some() || method.info().id.0 == reference::ID)
 }
 
 impl Document {
@@ -72,7 +143,6 @@ mod tests {
     use super::*;
     use crate::document::{DEFAULT_SCENE, open};
     use crate::lighting::{METHODS, classical, method};
-    use crate::param::ParamValue;
 
     fn settings(id: &str, values: &[(&str, &str)]) -> (MethodId, Settings) {
         let info = method::find(METHODS, id).unwrap().info();
@@ -98,6 +168,31 @@ mod tests {
         document.store_side_by(Side::B, id, &others);
         assert_eq!(document.snapshots.len(), 1, "it is replaced");
         assert_eq!(document.of_side(Side::B).lighting.settings(), others);
+    }
+
+    #[test]
+    fn an_override_lights_its_object_and_unknown_ones_count_as_none() {
+        let opened = open(DEFAULT_SCENE).unwrap();
+        let mut lighting = opened.document.lighting.clone();
+        let keys: Vec<String> = ["floor", "ball"].map(String::from).into();
+        lighting.override_object("ball", Some(classical::ID));
+        lighting.override_object("nobody", Some(classical::ID));
+        lighting.override_object("floor", Some("of tomorrow"));
+        let entry = lighting.overrides.get_mut("ball").unwrap();
+        entry.set("samples", ParamValue::Integer(64)).unwrap();
+        assert!(entry.set("masking", ParamValue::Choice(1)).unwrap_err().to_string().contains("samples"));
+        let layers = lighting.layers(&keys);
+        let places: Vec<_> = layers.iter().map(|layer| layer.instances.clone()).collect();
+        assert_eq!(places, [vec![], vec![1]]);
+        let samples = layers.iter().map(|layer| layer.settings.text("samples").unwrap());
+        assert_eq!(samples.collect::<Vec<_>>(), ["16", "64"]);
+        assert_eq!(lighting.world_settings(), lighting.settings());
+        lighting.override_object("ball", Some(reference::ID));
+        assert_eq!(lighting.world_settings(), lighting.reference_settings());
+        for key in ["ball", "nobody", "floor"] {
+            lighting.override_object(key, None);
+        }
+        assert_eq!(lighting, opened.document.lighting);
     }
 
     #[test]

@@ -30,6 +30,8 @@ pub enum Place {
     Method,
     /// A setting of the lighting method, by its key.
     Lighting(String),
+    /// The method of an object that another one lights, by the object's key.
+    Override(String),
     /// A setting of the reference, by its key.
     Reference(String),
     /// The point of view.
@@ -127,6 +129,11 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
         let words = words_of(lighting.live_method().info().params, key, value);
         all.insert(Place::Lighting(key.clone()), (Some(value.clone()), words));
     }
+    for (key, entry) in &lighting.overrides {
+        let settings = entry.settings.iter().map(|(key, value)| format!(", {key} {value}"));
+        let words = entry.method.clone() + &settings.collect::<String>();
+        all.insert(Place::Override(key.clone()), (serde_json::to_value(entry).ok(), words));
+    }
     for (key, value) in &lighting.reference {
         let words = words_of(reference::PARAMS, key, value);
         all.insert(Place::Reference(key.clone()), (Some(value.clone()), words));
@@ -187,6 +194,7 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Form) => "as the scene".into(),
         Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
+        Place::Override(_) => "as the scene".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
         Place::Rotation | Place::Strength | Place::Method | Place::Camera | Place::Exposure | Place::Tone => {
@@ -200,7 +208,7 @@ fn group(place: &Place) -> String {
         Place::Material(name, _) => format!("Material {name}"),
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
         Place::Map | Place::Rotation | Place::Strength => "Environment".into(),
-        Place::Method | Place::Lighting(_) => "Lighting".into(),
+        Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
         Place::Reference(_) => "Reference".into(),
         Place::Camera | Place::Exposure | Place::Tone => "View".into(),
     }
@@ -221,6 +229,7 @@ fn label(place: &Place) -> String {
         Place::Strength => "Strength".into(),
         Place::Method => "Method".into(),
         Place::Lighting(key) => of(setting_of_any_method(key), key),
+        Place::Override(object) => format!("Method of {object}"),
         Place::Reference(key) => of(reference::PARAMS, key),
         Place::Camera => "Camera".into(),
         Place::Exposure => "Exposure".into(),
@@ -306,6 +315,10 @@ impl Document {
             Place::Strength => self.environment.strength = from.environment.strength,
             Place::Method => self.lighting.choose(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
+            Place::Override(key) => match from.lighting.overrides.get(key) {
+                Some(entry) => _ = self.lighting.overrides.insert(key.clone(), entry.clone()),
+                None => _ = self.lighting.overrides.remove(key),
+            },
             Place::Reference(key) => setting(&mut self.lighting.reference, &from.lighting.reference, key),
             Place::Camera => self.view.camera = from.view.camera.clone(),
             Place::Exposure => self.view.exposure_ev = from.view.exposure_ev,

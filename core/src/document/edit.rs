@@ -334,7 +334,8 @@ impl Document {
 
     /// Sets a setting of the lighting method; the default is not stored.
     pub fn set_lighting(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
-        store(self.lighting.live_method().info().params, &mut self.lighting.settings, key, value)
+        let spec = param::find(self.lighting.live_method().info().params, key)?;
+        store(spec, &mut self.lighting.settings, value)
     }
 
     /// Sets a setting of the reference, see [`Document::set_lighting`]; a shared one is set for the method as well.
@@ -342,21 +343,15 @@ impl Document {
         if SHARED_SETTINGS.contains(&key) {
             return self.set_lighting(key, value);
         }
-        store(reference::PARAMS, &mut self.lighting.reference, key, value)
+        store(param::find(reference::PARAMS, key)?, &mut self.lighting.reference, value)
     }
 }
 
 /// Keeps a value unless it is the default.
-pub(super) fn store(
-    specs: &[ParamSpec],
-    stored: &mut Map<String, Value>,
-    key: &str,
-    value: ParamValue,
-) -> Result<(), ParamError> {
-    let spec = param::find(specs, key)?;
+pub(super) fn store(spec: &ParamSpec, stored: &mut Map<String, Value>, value: ParamValue) -> Result<(), ParamError> {
     let json = spec.json(value);
     if spec.from_json(&json)? == spec.default() {
-        stored.remove(key);
+        stored.remove(spec.key);
     } else {
         stored.insert(spec.key.into(), json);
     }

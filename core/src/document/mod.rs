@@ -29,6 +29,7 @@ use crate::param::{self, ParamSpec, ParamValue, Settings};
 use crate::reference;
 use crate::surface::fresnel::Form;
 
+pub use by_method::mixed_methods;
 pub use difference::{Difference, Part, Place, differences};
 pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
@@ -217,9 +218,25 @@ pub struct LightingEntry {
     /// Changed settings of the methods that were chosen before, by id.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub other_settings: BTreeMap<String, Map<String, Value>>,
+    /// Objects that another method lights, by key.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub overrides: BTreeMap<String, OverrideEntry>,
     /// Changed settings of the [reference](mod@reference) by key, without those that it shares with the method.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub reference: Map<String, Value>,
+    /// Fields that this version does not know.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+/// The method that lights an object other than the rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OverrideEntry {
+    /// Id of the method.
+    pub method: String,
+    /// Changed settings by key.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub settings: Map<String, Value>,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -281,6 +298,7 @@ impl Default for LightingEntry {
             method: classical::ID.into(),
             settings: Map::new(),
             other_settings: BTreeMap::new(),
+            overrides: BTreeMap::new(),
             reference: Map::new(),
             other: Map::new(),
         }

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use half::f16;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -56,6 +57,8 @@ pub enum Array {
     F64(Vec<f64>),
     /// 32-bit floats.
     F32(Vec<f32>),
+    /// 16-bit floats.
+    F16(Vec<f16>),
     /// Whole numbers.
     U32(Vec<u32>),
     /// Bytes.
@@ -292,6 +295,7 @@ macro_rules! elements {
 elements! {
     F64 f64, "f64";
     F32 f32, "f32";
+    F16 f16, "f16";
     U32 u32, "u32";
     U8 u8, "u8";
 }

@@ -1,17 +1,29 @@
 //! Pictures by a method on the processor: its points where rays from the eye meet surfaces, and what fills in the rest.
 
+use std::sync::Arc;
+
 use glam::{UVec2, Vec3};
 
-use super::method::{Cover, Method, ShadePoint};
+use super::layers::Layers;
+use super::method::{Cover, Method, MethodInfo, ShadePoint};
 use super::prepared::Prepared;
 use crate::param::Settings;
-use crate::reference::{Control, Eye, Film, FirstHit, Pass, PathSample, View, World, trace_with};
+use crate::reference::{self, Control, Eye, Film, FirstHit, Pass, PathSample, View, World, trace_with};
 
-/// A method ready to draw a scene.
-#[derive(Clone, Copy)]
+/// Methods ready to draw a scene.
+#[derive(Clone)]
 pub struct Drawing<'a> {
     world: &'a World,
-    points: &'a dyn ShadePoint,
+    lit: Vec<Lit<'a>>,
+    /// Which of them lights an instance; the first lights those beyond the list.
+    of_instance: Vec<u16>,
+}
+
+/// A method with what it looks up.
+#[derive(Clone, Copy)]
+struct Lit<'a> {
+    /// `None` follows paths.
+    points: Option<&'a dyn ShadePoint>,
     prepared: &'a Prepared,
     settings: &'a Settings,
     /// The frame adds these where the method leaves them out.
@@ -20,18 +32,12 @@ pub struct Drawing<'a> {
     adds_emission: bool,
 }
 
-impl<'a> Drawing<'a> {
-    /// `None` where the method does not draw on the processor by points.
-    pub fn new(
-        method: &'a dyn Method,
-        world: &'a World,
-        prepared: &'a Prepared,
-        settings: &'a Settings,
-    ) -> Option<Drawing<'a>> {
-        let coverage = method.info().coverage;
-        Some(Drawing {
-            world,
-            points: method.points()?,
+impl<'a> Lit<'a> {
+    fn new(method: &'a dyn Method, prepared: &'a Prepared, settings: &'a Settings) -> Option<Lit<'a>> {
+        let MethodInfo { id, coverage, .. } = method.info();
+        let points = method.points();
+        (points.is_some() || id.0 == reference::ID).then_some(Lit {
+            points,
             prepared,
             settings,
             adds_lamps: coverage.lamps == Cover::None,
@@ -39,21 +45,52 @@ impl<'a> Drawing<'a> {
             adds_emission: coverage.emission == Cover::None,
         })
     }
+}
+
+impl<'a> Drawing<'a> {
+    /// `None` where the method does not draw on the processor.
+    pub fn new(
+        method: &'a dyn Method,
+        world: &'a World,
+        prepared: &'a Prepared,
+        settings: &'a Settings,
+    ) -> Option<Drawing<'a>> {
+        let lit = vec![Lit::new(method, prepared, settings)?];
+        Some(Drawing { world, lit, of_instance: Vec::new() })
+    }
+
+    /// By several methods, with the preparation of each; `None` where one of them does not draw on the processor.
+    pub fn of_layers(world: &'a World, layers: &'a Layers, prepared: &'a [Arc<Prepared>]) -> Option<Drawing<'a>> {
+        let each = layers.iter().zip(prepared);
+        let lit = each.map(|(layer, prepared)| Lit::new(layer.method, prepared, &layer.settings));
+        let lit: Vec<Lit<'a>> = lit.collect::<Option<_>>()?;
+        let mut of_instance = vec![0; if layers.is_single() { 0 } else { world.scene().instances.len() }];
+        for (number, layer) in layers.iter().enumerate().skip(1) {
+            for &instance in &layer.instances {
+                if let Some(place) = of_instance.get_mut(instance) {
+                    *place = number as u16;
+                }
+            }
+        }
+        (!lit.is_empty()).then_some(Drawing { world, lit, of_instance })
+    }
 
     /// A sample of a pixel, which is counted from the top left: a pure function of view, pixel and `index`.
     pub fn sample(&self, view: &View, pixel: UVec2, index: u32) -> PathSample {
         let mut eye = Eye::new(self.world, view, pixel, index);
         let [for_method, for_lamps, for_sky, for_surface] = std::array::from_fn(|_| eye.random());
         let Some(point) = eye.point() else { return eye.miss() };
-        let mut radiance = self.points.radiance(&point, self.prepared, self.settings, for_method);
-        if self.adds_emission {
+        let lit = self.lit[usize::from(self.of_instance.get(point.instance() as usize).copied().unwrap_or(0))];
+        let Some(points) = lit.points else { return self.world.sample(view, pixel, index) };
+        let mut radiance = points.radiance(&point, lit.prepared, lit.settings, for_method);
+        if lit.adds_emission {
             radiance += point.emission();
         }
-        if self.adds_environment {
+        if lit.adds_environment {
             radiance += point.environment([for_sky, for_surface]);
         }
         let mut rays = 1;
-        if self.adds_lamps {
+        if lit.adds_lamps {
             let (light, cast) = point.lamps(for_lamps);
             radiance += light;
             rays += cast;
@@ -80,7 +117,8 @@ mod tests {
     use glam::{UVec2, Vec3};
 
     use super::*;
-    use crate::lighting::{Coverage, MethodId, MethodInfo, Reads};
+    use crate::job::Handle;
+    use crate::lighting::{Coverage, Layer, MethodId, Reads, Store, classical};
     use crate::reference::{Options, SurfacePoint, trace};
     use crate::scene::{Environment, Light, LightKind, gallery};
 
@@ -93,13 +131,7 @@ mod tests {
         title: "Nothing",
         summary: "",
         params: &[],
-        coverage: Coverage {
-            lamps: Cover::None,
-            environment: Cover::None,
-            indirect_diffuse: Cover::None,
-            indirect_glossy: Cover::None,
-            emission: Cover::None,
-        },
+        coverage: Coverage::NONE,
         reads: Reads::NOTHING,
         revision: 1,
     };
@@ -147,5 +179,37 @@ mod tests {
         let ratio = mean(&drawn) / mean(&traced);
         assert!((ratio - 1.0).abs().max_element() < 0.01, "{ratio}");
         assert_eq!((drawn.rejected(), traced.rejected()), (0, 0));
+    }
+
+    #[test]
+    fn instances_are_lit_by_the_method_that_is_meant_for_them() {
+        let mut scene = gallery::open("box-sphere").unwrap();
+        scene.environment = Some(Arc::new(Environment::new("grey", 8, 4, vec![Vec3::splat(0.5); 32])));
+        let world = World::new(&Arc::new(scene), Options { bounces: 4, ..Options::default() });
+        let camera = world.scene().cameras[0].clone();
+        let view = View { camera, size: UVec2::new(24, 16), seed: 1 };
+        let (classical, paths) = (&classical::Classical, &reference::Reference);
+        let [of_classical, of_paths] =
+            [classical as &'static dyn Method, paths].map(|m| Layers::of(m, Settings::new(m.info().params)));
+        let subject = world.scene().subject.clone();
+        let settings = Settings::new(reference::PARAMS);
+        let mixed = of_classical.clone().with(Layer { method: paths, settings, instances: subject.clone() });
+        let pictures = [&of_classical, &of_paths, &mixed].map(|layers| {
+            let prepared = layers.prepare(&Store::none(), &world, &Handle::default()).unwrap();
+            let drawing = Drawing::of_layers(&world, layers, &prepared).unwrap();
+            let mut samples = Vec::new();
+            for i in 0..24 * 16 {
+                samples.push(drawing.sample(&view, UVec2::new(i % 24, i / 24), 0));
+            }
+            samples
+        });
+        let [classical, paths, mixed] = pictures;
+        let is_of_subject =
+            |sample: &PathSample| sample.first.is_some_and(|f| subject.contains(&(f.instance as usize)));
+        assert!(paths.iter().any(is_of_subject) && !paths.iter().all(is_of_subject));
+        for (i, sample) in mixed.iter().enumerate() {
+            let expected = if is_of_subject(sample) { &paths[i] } else { &classical[i] };
+            assert_eq!(sample.radiance, expected.radiance, "pixel {i}");
+        }
     }
 }

@@ -71,6 +71,15 @@ pub struct Coverage {
 }
 
 impl Coverage {
+    /// All is left to the frame.
+    pub const NONE: Coverage = Coverage {
+        lamps: Cover::None,
+        environment: Cover::None,
+        indirect_diffuse: Cover::None,
+        indirect_glossy: Cover::None,
+        emission: Cover::None,
+    };
+
     /// Every term with its name and what takes its place where the method does not do it.
     pub fn terms(&self) -> [(&'static str, Cover, &'static str); 5] {
         [

@@ -1,7 +1,9 @@
 //! Lighting methods, one folder each.
 
 pub mod classical;
+pub mod cube_map;
 pub mod drawing;
+pub mod layers;
 pub mod method;
 pub mod prepared;
 
@@ -11,6 +13,7 @@ use crate::leaf::Leaf;
 use crate::reference;
 
 pub use drawing::Drawing;
+pub use layers::{Layer, Layers};
 pub use method::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Methods, ShadePoint};
 pub use prepared::{Prepared, Reads, Store};
 

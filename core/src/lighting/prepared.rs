@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use half::f16;
 use serde_json::json;
 
 use super::method::{Method, MethodError, MethodInfo};
@@ -72,6 +73,22 @@ impl Prepared {
     pub fn floats(&self, name: &str) -> &[f32] {
         match self.arrays.iter().find(|(known, _)| known == name) {
             Some((_, Array::F32(values))) => values,
+            _ => &[],
+        }
+    }
+
+    /// The numbers of an array of 16-bit floats; empty where there is none of that name.
+    pub fn halves(&self, name: &str) -> &[f16] {
+        match self.arrays.iter().find(|(known, _)| known == name) {
+            Some((_, Array::F16(values))) => values,
+            _ => &[],
+        }
+    }
+
+    /// The numbers of an array of whole numbers; empty where there is none of that name.
+    pub fn whole(&self, name: &str) -> &[u32] {
+        match self.arrays.iter().find(|(known, _)| known == name) {
+            Some((_, Array::U32(values))) => values,
             _ => &[],
         }
     }
@@ -147,22 +164,22 @@ impl Store {
         Container::of_arrays(KIND, header, prepared.arrays.clone()).write(&path)
     }
 
-    /// The preparation of a scene: read, or computed and kept. One that cannot be kept is given all the same.
+    /// The preparation of a scene under its [`key`]: read, or computed and kept. One that cannot be kept is given all the same.
     pub fn prepare(
         &self,
+        key: &str,
         method: &dyn Method,
         world: &World,
         settings: &Settings,
         job: &Handle,
     ) -> Result<Prepared, MethodError> {
-        let key = key(method, settings, world.scene());
-        if let Some(prepared) = self.read(&key) {
+        if let Some(prepared) = self.read(key) {
             return Ok(prepared);
         }
         let prepared = method.prepare(world, settings, job)?;
         if !prepared.is_nothing() {
             // It is made again next time.
-            let _ = self.keep(&key, &prepared);
+            let _ = self.keep(key, &prepared);
         }
         Ok(prepared)
     }

@@ -18,6 +18,18 @@ pub fn direction(face: u32, p: Vec2) -> Vec3 {
     d.normalize()
 }
 
+/// The face that shows a direction of any length but 0, and the point of it: the inverse of [`direction`].
+pub fn face_point(d: Vec3) -> (u32, Vec2) {
+    let a = d.abs();
+    if a.x >= a.y && a.x >= a.z {
+        return if d.x >= 0.0 { (0, Vec2::new(-d.z, -d.y) / a.x) } else { (1, Vec2::new(d.z, -d.y) / a.x) };
+    }
+    if a.y >= a.z {
+        return if d.y >= 0.0 { (2, Vec2::new(d.x, d.z) / a.y) } else { (3, Vec2::new(d.x, -d.z) / a.y) };
+    }
+    if d.z >= 0.0 { (4, Vec2::new(d.x, -d.y) / a.z) } else { (5, Vec2::new(-d.x, -d.y) / a.z) }
+}
+
 /// Solid angle of a small texel at a point of a face over that of one in the face's middle: `(1 + |p|^2)^(-3/2)`.
 pub fn weight(p: Vec2) -> f32 {
     (1.0 + p.length_squared()).powf(-1.5)
@@ -38,6 +50,16 @@ mod tests {
         let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         for (face, axis) in axes.into_iter().enumerate() {
             assert_eq!(direction(face as u32, Vec2::ZERO), axis);
+        }
+    }
+
+    #[test]
+    fn the_face_of_a_direction_is_the_one_that_shows_it() {
+        for face in 0..6 {
+            for p in [Vec2::ZERO, Vec2::new(0.9, -0.3), Vec2::new(-0.99, 0.98)] {
+                let (found, q) = face_point(2.5 * direction(face, p));
+                assert!(found == face && q.abs_diff_eq(p, 1e-6), "{face} {p}: {found} {q}");
+            }
         }
     }
 

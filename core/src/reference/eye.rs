@@ -3,10 +3,12 @@
 use glam::{UVec2, Vec2, Vec3};
 
 use super::bsdf::Bsdf;
+use super::lamps;
 use super::lights::{End, Kind};
 use super::path::{balance, shadow_ray};
-use super::point::Point;
+use super::point::{Point, Triangle};
 use super::sampler::PathSampler;
+use super::texture::lookup;
 use super::waves::Waves;
 use super::world::{Sight, World};
 use super::{PathSample, View};
@@ -28,7 +30,7 @@ pub struct Eye<'a> {
 pub struct SurfacePoint<'a> {
     world: &'a World,
     point: Point<'a>,
-    instance: u32,
+    hit: &'a Hit,
     to_viewer: Vec3,
     salt: u32,
 }
@@ -50,7 +52,7 @@ impl<'a> Eye<'a> {
         let hit = self.hit.as_ref()?;
         let to_viewer = -self.ray.direction;
         let point = Point::new(self.world, hit, to_viewer, Waves::Rgb);
-        Some(SurfacePoint { world: self.world, point, instance: hit.instance, to_viewer, salt: self.sampler.salt() })
+        Some(SurfacePoint { world: self.world, point, hit, to_viewer, salt: self.sampler.salt() })
     }
 
     /// The next four numbers of this sample in `[0, 1)`.
@@ -113,7 +115,7 @@ impl SurfacePoint<'_> {
 
     /// Index into `Scene::instances`.
     pub fn instance(&self) -> u32 {
-        self.instance
+        self.hit.instance
     }
 
     /// Index into `Scene::materials`.
@@ -155,6 +157,24 @@ impl SurfacePoint<'_> {
         }
         let seen = !self.world.occluded(&shadow_ray(&self.point, &sample), self.salt);
         (if seen { light } else { Vec3::ZERO }, 1)
+    }
+
+    /// Direct light of all punctual lights, each with its shadow.
+    pub fn punctual(&self) -> Vec3 {
+        let lights = self.world.scene().lights.iter();
+        let lit = lights.map(|light| lamps::at(light, self.point.position)).map(|lamp| {
+            let light = self.response(lamp.direction) * lamp.irradiance;
+            if light != Vec3::ZERO && self.sees(lamp.direction, lamp.distance) { light } else { Vec3::ZERO }
+        });
+        lit.sum()
+    }
+
+    /// Share of even light that the model's occlusion texture leaves, 0 to 1. Paths need none.
+    pub fn occlusion(&self) -> f32 {
+        let material = self.world.material(self.hit.instance);
+        let at = Triangle::new(self.world, self.hit).coordinates();
+        let texel = lookup(self.world.scene(), material.occlusion_texture, &at, false);
+        texel.map_or(1.0, |texel| 1.0 + material.occlusion_strength * (texel.x - 1.0))
     }
 
     /// Direct light of the environment as if nothing stood in its way, of a direction to its light and one of the surface:

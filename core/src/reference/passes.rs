@@ -47,6 +47,11 @@ impl Control {
         Control { handle: handle.clone(), ..Control::default() }
     }
 
+    /// The job that it ends with.
+    pub fn job(&self) -> &Handle {
+        &self.handle
+    }
+
     /// Ends the work as soon as the samples that are being traced are done; there is no way back.
     pub fn cancel(&self) {
         self.handle.cancel();

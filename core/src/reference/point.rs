@@ -69,7 +69,8 @@ impl<'a> Triangle<'a> {
         Triangle { world, hit, corners, weights }
     }
 
-    fn coordinates(&self) -> Coordinates {
+    /// Of its textures.
+    pub(super) fn coordinates(&self) -> Coordinates {
         Coordinates::new(self.world.mesh(self.hit.instance), self.corners, self.weights)
     }
 

@@ -108,8 +108,12 @@ fn kept() {
     let world = |scene: &burnish_core::scene::Scene| World::new(&scene.clone().into(), Options::default());
     let mut settings = Settings::new(Ambient.info().params);
     let (store, job) = (Store::within(&folder), Handle::default());
+    let prepare_in = |store: &Store, settings: &Settings, scene: &burnish_core::scene::Scene| {
+        store.prepare(&key(&Ambient, settings, scene), &Ambient, &world(scene), settings, &job)
+    };
+    let prepare = |settings: &Settings, scene: &burnish_core::scene::Scene| prepare_in(&store, settings, scene);
     let files = || fs::read_dir(&folder).map_or(0, Iterator::count);
-    let first = store.prepare(&Ambient, &world(&scene), &settings, &job).expect("an environment");
+    let first = prepare(&settings, &scene).expect("an environment");
     assert!(first.bytes() == 12 && files() == 1);
 
     // Neither a setting of frames nor an edit of what it does not read makes another.
@@ -119,7 +123,7 @@ fn kept() {
     assert_eq!(store.read(&before).as_ref(), Some(&first));
     settings.set_value("rows", ParamValue::Integer(5)).expect("in range");
     assert!(store.read(&key(&Ambient, &settings, &scene)).is_none());
-    let other = store.prepare(&Ambient, &world(&scene), &settings, &job).expect("an environment");
+    let other = prepare(&settings, &scene).expect("an environment");
     assert!(other != first && files() == 2);
 
     // A damaged file is none, and is written again.
@@ -130,14 +134,14 @@ fn kept() {
     fs::write(&file, &bytes).expect("the folder can be written");
     settings.set_value("rows", ParamValue::Integer(64)).expect("in range");
     assert!(store.read(&before).is_none());
-    assert_eq!(store.prepare(&Ambient, &world(&scene), &settings, &job).as_ref(), Ok(&first));
+    assert_eq!(prepare(&settings, &scene).as_ref(), Ok(&first));
     assert_eq!(store.read(&before), Some(first));
 
     job.cancel();
     scene.environment = None;
-    let error = Store::none().prepare(&Ambient, &world(&scene), &settings, &job).unwrap_err();
+    let error = prepare_in(&Store::none(), &settings, &scene).unwrap_err();
     assert_eq!(error.to_string(), "cancelled");
-    let error = Store::none().prepare(&Ambient, &world(&scene), &settings, &Handle::default()).unwrap_err();
+    let error = Ambient.prepare(&world(&scene), &settings, &Handle::default()).unwrap_err();
     assert!(error.to_string().contains("--env"), "{error}");
 }
 

@@ -1,6 +1,6 @@
 //! Environment light: levels, prefiltering, and the light of whole surfaces, with formulas in the place of maps.
 
-use burnish_core::lighting::classical::{self, Lobes, Maps, Source};
+use burnish_core::lighting::classical::{self, Lobes, Maps, MeanFresnel, Source};
 use burnish_core::math::frame::Frame;
 use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -43,8 +43,12 @@ impl Maps for Formulas {
         0.7 * light(Vec3::new(d.y, d.z, d.x), level)
     }
 
-    fn sources(&self) -> &[Source] {
-        &SOURCES
+    fn source_count(&self) -> usize {
+        SOURCES.len()
+    }
+
+    fn source(&self, index: usize) -> Source {
+        SOURCES[index]
     }
 
     fn wide_alpha(&self) -> f32 {
@@ -168,8 +172,11 @@ fn environment_inputs() -> Vec<[Vec4; 13]> {
 fn environment(x: &[Vec4; 13]) -> [Vec4; 1] {
     let s = surface::unpack(x);
     let curve = &Curves::get().all[x[3].x as usize];
-    let table = curve.albedo.as_ref().map(|tables| &tables[s.masking as usize][..]);
+    let mean = match &curve.albedo {
+        Some(tables) => MeanFresnel::Table(&tables[s.masking as usize]),
+        None => MeanFresnel::Schlick,
+    };
     let frame = |i: usize| Frame { t: x[i].xyz(), b: x[i + 1].xyz(), n: x[i + 2].xyz() };
     let lobes = Lobes { samples: x[11].x as u32, rotation: x[11].zw() };
-    [v4(classical::environment(&Formulas, &s, table, &frame(5), &frame(8), x[4].xyz(), x[4].w, lobes), 0.0)]
+    [v4(classical::environment(&Formulas, &s, mean, &frame(5), &frame(8), x[4].xyz(), x[4].w, lobes), 0.0)]
 }

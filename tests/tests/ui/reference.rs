@@ -18,6 +18,7 @@ pub fn trials() -> Vec<Trial> {
         trial("settings_of_the_reference_are_shown_edited_and_undone", &[], settings),
         trial("a_reference_that_fails_says_so_and_leaves_the_live_picture", &[], failed),
         trial("the_reference_is_saved_as_it_is_shown", &[], saved),
+        trial("an_object_is_lit_by_another_method_than_the_scene", &[], lit_otherwise),
     ]
 }
 
@@ -172,4 +173,35 @@ fn saved() {
     let look = reference(&bench).shown().expect("it is still there");
     let written = burnish_core::file::read_picture(&path).expect("it was written").0;
     assert_eq!((written.width, written.height), (look.picture.width, look.picture.height));
+}
+
+fn lit_otherwise() {
+    let mut bench = Bench::new(Setup {
+        name: "reference-otherwise",
+        scene: Some("gallery:ball"),
+        size: [1280.0, 1400.0],
+        drawn: false,
+    });
+    let key = bench.session().resolved().object_keys[0].clone();
+    let name = bench.session().scene().instances[0].name.clone();
+    let method = |bench: &Bench| bench.session().document().lighting.overrides.get(&key).map(|o| o.method.clone());
+    bench.workbench().show_panel(Pane::Environment);
+    bench.click("Objects lit otherwise");
+    bench.workbench().session_mut().selection.objects = vec![key.clone()];
+    bench.click("Light the selection otherwise");
+    assert_eq!(method(&bench).as_deref(), Some("reference"));
+    // The cubes of the scene's own method are made, then both draw.
+    bench.until("it is drawn on the processor", |w| w.reference().shown().is_some_and(|look| look.samples >= 2));
+    bench.until_shown("1 object lit otherwise, drawn on the processor");
+    bench.click_role(Role::ComboBox, &format!("Method of {name}"));
+    bench.click_role(Role::Button, "Classical");
+    assert_eq!(method(&bench).as_deref(), Some("classical"));
+    bench.until("it is drawn anew", |w| w.reference().shown().is_some_and(|look| look.samples >= 2));
+    assert!(bench.text().contains("\"overrides\""), "it is saved: {}", bench.text());
+    bench.click(&format!("Light {name} as the scene"));
+    assert_eq!(method(&bench), None);
+    bench.until("the device draws again", |w| w.reference().shown().is_none());
+    bench.keys(Modifiers::COMMAND, Key::Z);
+    bench.keys(Modifiers::COMMAND, Key::Z);
+    assert_eq!(method(&bench).as_deref(), Some("reference"));
 }

@@ -12,6 +12,7 @@ use glam::UVec2;
 use super::{Output, assign, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure, printable};
+use crate::source::Opened;
 
 /// Frames that are averaged when nothing is said.
 const FRAMES: u32 = 16;
@@ -33,13 +34,12 @@ impl ClassicalArgs {
 
 pub fn run(
     args: &ClassicalArgs,
-    stage: &StageArgs,
+    (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let opened = stage.open()?;
     let document = opened.document.as_ref();
     let mut settings = document.map_or_else(|| Settings::new(classical::PARAMS), |d| d.lighting.settings());
     assign(&mut settings, set)?;
@@ -48,7 +48,7 @@ pub fn run(
     tell(err, &notices)?;
 
     let start = Instant::now();
-    let gpu = Gpu::new().map_err(Failure::resources)?;
+    let gpu = Gpu::new().map_err(|e| Failure::resources(format!("{e}; or draw on the processor with --processor")))?;
     let frames = args.spp_jitter.unwrap_or(FRAMES);
     let view = View { size, camera, settings, jitter_frames: frames };
     let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;

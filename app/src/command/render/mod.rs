@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::ViewEntry;
 use burnish_core::file::PictureFormat;
-use burnish_core::lighting::{self, Method};
+use burnish_core::lighting::{self, Layers, Method};
 use burnish_core::param::{ParamSpec, Settings};
 use glam::UVec2;
 
@@ -20,6 +20,7 @@ use reference::ReferenceArgs;
 
 use super::stage::{self, StageArgs};
 use crate::failure::{Exit, Failure, printable};
+use crate::source::Opened;
 use crate::value::{self, MethodChoice};
 
 const REFERENCE: &str = burnish_core::reference::ID;
@@ -32,8 +33,12 @@ pub struct Args {
     #[command(flatten)]
     output: Output,
     /// How light is computed: classical, by lookups on the GPU; reference, by paths on the processor; see `burnish methods`
-    #[arg(long, value_name = "METHOD", default_value = lighting::classical::ID, value_parser = value::method)]
-    method: MethodChoice,
+    /// [default: as the document says, its objects that are lit otherwise included, else classical]
+    #[arg(long, value_name = "METHOD", value_parser = value::method)]
+    method: Option<MethodChoice>,
+    /// Draw on the processor also what the graphics device could draw
+    #[arg(long)]
+    processor: bool,
     /// Setting of the method, see below; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
     set: Vec<(String, String)>,
@@ -61,22 +66,39 @@ struct Output {
 }
 
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    let Args { stage, output, method, set, cache, classical, reference } = args;
+    let Args { stage, output, method, processor, set, cache, classical, reference } = args;
     output.check()?;
-    let (foreign, other) = match method.id() {
-        lighting::classical::ID => (reference.given(), REFERENCE),
-        REFERENCE => (classical.given(), lighting::classical::ID),
-        _ => (classical.given(), lighting::classical::ID),
+    // Read before the scene is, so that what can be refused is refused at once.
+    let opened = match method {
+        Some(_) => None,
+        None => Some(stage.open()?),
+    };
+    let layers = match (&opened, method) {
+        (Some(Opened { document: Some(document), object_keys, .. }), None) => document.lighting.layers(object_keys),
+        _ => {
+            let method = method.map_or(&lighting::classical::Classical as &'static dyn Method, |chosen| chosen.0);
+            Layers::of(method, Settings::new(method.info().params))
+        }
+    };
+    let id = layers.first().method.info().id.0;
+    let on_device = id == lighting::classical::ID && layers.is_single() && !processor;
+    let (foreign, other) = match on_device {
+        true => (reference.given(), REFERENCE),
+        false => (classical.given(), lighting::classical::ID),
     };
     if let Some(option) = foreign {
         return Err(Failure::usage(format!(
             "{option} belongs to --method {other}; choose that, or leave {option} out"
         )));
     }
-    match method.id() {
-        lighting::classical::ID => classical::run(&classical, &stage, &set, &output, out, err),
-        REFERENCE => reference::run(&reference, &stage, &set, &output, out, err),
-        _ => points::run(method.0, (&reference, cache.as_deref()), &stage, &set, &output, out, err),
+    let scene = match opened {
+        Some(opened) => (&stage, opened),
+        None => (&stage, stage.open()?),
+    };
+    match id {
+        _ if on_device => classical::run(&classical, scene, &set, &output, out, err),
+        REFERENCE => reference::run(&reference, scene, &set, &output, out, err),
+        _ => points::run(layers, (&reference, cache.as_deref()), scene, &set, &output, out, err),
     }
 }
 
@@ -91,7 +113,9 @@ pub fn reference_picture(
 ) -> Result<Exit, Failure> {
     let output = Output { out: file, tone: None, exposure: None };
     output.check()?;
-    reference::run(&ReferenceArgs::of_samples(samples), &StageArgs::plain(scene, size), &[], &output, out, err)
+    let stage = StageArgs::plain(scene, size);
+    let opened = stage.open()?;
+    reference::run(&ReferenceArgs::of_samples(samples), (&stage, opened), &[], &output, out, err)
 }
 
 impl Output {

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use burnish_core::document::Document;
 use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::classical::form_choice;
-use burnish_core::lighting::{Drawing, Method, MethodError, MethodId, Store};
-use burnish_core::param::Settings;
+use burnish_core::lighting::{Drawing, Layers, MethodError, MethodId, Store};
 use burnish_core::reference::{Control, Film, Options, Pass, View, World};
 use glam::UVec2;
 
@@ -19,28 +19,29 @@ use super::{Output, assign, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
+use crate::source::Opened;
 use crate::window::Folders;
 
 /// Samples where no number is given.
 const SAMPLES: u32 = 16;
 
 pub fn run(
-    method: &'static dyn Method,
+    layers: Layers,
     (args, cache): (&ReferenceArgs, Option<&Path>),
-    stage: &StageArgs,
+    (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let id = method.info().id;
+    let id = layers.first().method.info().id;
     let (samples, seed) = args.only_samples(id)?;
-    let opened = stage.open()?;
-    let stored = opened.document.as_ref().filter(|document| document.lighting.method == id.0);
-    let mut settings =
-        stored.map_or_else(|| Settings::new(method.info().params), |document| document.lighting.settings());
-    assign(&mut settings, set)?;
-    let staged = stage.set(opened, form_choice(&settings), Forms::OfMaterials)?;
+    let layers = with_settings(layers, opened.document.as_ref(), set)?;
+    let settings = &layers.first().settings;
+    let mixed = opened.document.as_ref().filter(|_| !layers.is_single());
+    let world = mixed.map_or_else(|| settings.clone(), |document| document.lighting.world_settings());
+    let options = Options::new(&world);
+    let staged = stage.set(opened, form_choice(settings), Forms::OfMaterials)?;
     let Staged { scene, camera, size, notices, document, .. } = staged;
     tell(err, &notices)?;
 
@@ -59,9 +60,9 @@ pub fn run(
     };
     let drawn = interrupt::meanwhile(cancel, || {
         pool.install(|| {
-            let world = World::new(&Arc::new(scene), Options::new(&settings));
-            let prepared = store.prepare(method, &world, &settings, &job)?;
-            let drawing = Drawing::new(method, &world, &prepared, &settings);
+            let world = World::new(&Arc::new(scene), options);
+            let prepared = layers.prepare(&store, &world, &job)?;
+            let drawing = Drawing::of_layers(&world, &layers, &prepared);
             Ok(drawing.map(|drawing| drawing.draw(&view, &mut film, samples, &Control::of_job(&job))))
         })
     });
@@ -73,8 +74,22 @@ pub fn run(
     let (tone, exposure_ev) = output.look(document.as_ref().map(|document| &document.view));
     write_picture(&film.picture(), &output.out, tone, exposure_ev).map_err(Failure::resources)?;
     let (UVec2 { x, y }, secs) = (size, start.elapsed().as_secs_f32());
-    writeln!(out, "wrote {}: {x}x{y}, {samples} samples by {id}, {secs:.1} s", output.out.display())?;
+    let others = match layers.iter().count() - 1 {
+        0 => String::new(),
+        1 => ", 1 object by another method".into(),
+        count => format!(", {count} objects by other methods"),
+    };
+    writeln!(out, "wrote {}: {x}x{y}, {samples} samples by {id}{others}, {secs:.1} s", output.out.display())?;
     Ok(Exit::Ok)
+}
+
+/// The layers with the settings of the scene's method from the document, if it is its method, and from `--set`.
+fn with_settings(layers: Layers, document: Option<&Document>, set: &[(String, String)]) -> Result<Layers, Failure> {
+    let method = layers.first().method;
+    let stored = document.filter(|document| document.lighting.method == method.info().id.0);
+    let mut settings = stored.map_or_else(|| layers.first().settings.clone(), |document| document.lighting.settings());
+    assign(&mut settings, set)?;
+    Ok(layers.iter().skip(1).cloned().fold(Layers::of(method, settings), Layers::with))
 }
 
 fn method_failure(id: MethodId, error: &MethodError) -> Failure {

@@ -19,6 +19,7 @@ use super::tracing::{Store, Traced, Tracing};
 use super::{Output, assign, check_folder, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure};
+use crate::source::Opened;
 use crate::value;
 
 /// Samples where no end is given.
@@ -117,7 +118,7 @@ impl ReferenceArgs {
 
 pub fn run(
     args: &ReferenceArgs,
-    stage: &StageArgs,
+    (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
     out: &mut dyn Write,
@@ -129,7 +130,6 @@ pub fn run(
             return Err(Failure::usage("--checkpoint and --out name the same file; give them different names"));
         }
     }
-    let opened = stage.open()?;
     let settings = args.settings(set, opened.document.as_ref())?;
     let choice = form_choice(&settings, opened.document.as_ref());
     let Staged { scene, camera, size, mut notices, document, metals } = stage.set(opened, choice, Forms::OfAll)?;

@@ -6,8 +6,11 @@ mod map;
 mod sides;
 
 use burnish_core::document::Side;
+use burnish_core::lighting::Store;
 use burnish_core::measure::error_map::Metric;
+use eframe::egui;
 
+use super::preparations::{Preparations, drawn_on_device};
 use super::reference::Reference;
 use super::session::Session;
 use super::stage::{Screen, Stage};
@@ -55,7 +58,11 @@ pub struct Compare {
     pub metric: Metric,
     /// The scenes of the sides.
     pub sides: Sides,
-    /// Traces B where A is traced too.
+    /// What the sides look up where the processor draws them.
+    pub preparations: [Preparations; 2],
+    /// Their methods draw on the processor.
+    on_processor: [bool; 2],
+    /// Draws B on the processor where A is drawn there too.
     second: Reference,
     /// Maps and the pictures that they are made of.
     pub maps: MapDesk,
@@ -65,9 +72,12 @@ pub struct Compare {
     turn: Side,
 }
 
-impl Default for Compare {
-    fn default() -> Self {
+impl Compare {
+    /// Nothing is compared; preparations are kept in a store.
+    pub fn new(store: Store) -> Compare {
         Compare {
+            preparations: [Preparations::new(store.clone()), Preparations::new(store)],
+            on_processor: [false; 2],
             view: None,
             last: CompareView::Wipe,
             wipe: 0.5,
@@ -80,9 +90,7 @@ impl Default for Compare {
             turn: Side::A,
         }
     }
-}
 
-impl Compare {
     /// How two pictures are shown; `None` while there is one.
     pub fn view(&self) -> Option<CompareView> {
         self.view
@@ -102,21 +110,35 @@ impl Compare {
         self.settled = [false; 2];
     }
 
-    /// The reference that traces a side: the window's, or a second one for B where A is traced as well.
+    /// Notes what lights a side.
+    pub fn light(&mut self, side: Side, scene: &SideScene, ctx: &egui::Context) {
+        self.on_processor[side as usize] = !drawn_on_device(&scene.layers);
+        self.preparations[side as usize].follow(&scene.layers, &scene.scene, ctx);
+    }
+
+    /// The processor draws a side, path by path or point by point.
+    pub fn is_traced(&self, session: &Session, side: Side) -> bool {
+        session.document().compare.side(side).is_reference() || self.on_processor[side as usize]
+    }
+
+    /// B has the second tracer where A is drawn on the processor as well.
+    fn is_second(&self, session: &Session, side: Side) -> bool {
+        side == Side::B && Side::ALL.iter().all(|side| self.is_traced(session, *side))
+    }
+
+    /// The thread that draws a side: the window's, or a second one.
     pub fn tracer<'a>(&'a mut self, main: &'a mut Reference, session: &Session, side: Side) -> &'a mut Reference {
-        let both = Side::ALL.iter().all(|side| session.document().compare.side(*side).is_reference());
-        if both && side == Side::B { &mut self.second } else { main }
+        if self.is_second(session, side) { &mut self.second } else { main }
     }
 
     /// The same, to look at.
     pub fn tracer_of<'a>(&'a self, main: &'a Reference, session: &Session, side: Side) -> &'a Reference {
-        let both = Side::ALL.iter().all(|side| session.document().compare.side(*side).is_reference());
-        if both && side == Side::B { &self.second } else { main }
+        if self.is_second(session, side) { &self.second } else { main }
     }
 
     /// The screen of a side: one that is drawn live has the main one, so that one alone needs no second.
-    pub fn screen(session: &Session, side: Side) -> Screen {
-        let live = |side| !session.document().compare.side(side).is_reference();
+    pub fn screen(&self, session: &Session, side: Side) -> Screen {
+        let live = |side| !self.is_traced(session, side);
         match (side, live(side), live(side.other())) {
             (_, true, false) => Screen::Main,
             (_, false, true) => Screen::Second,
@@ -132,7 +154,7 @@ impl Compare {
             self.settled = [false; 2];
             self.maps.forget();
         }
-        let both = Side::ALL.iter().all(|side| !session.document().compare.side(*side).is_reference());
+        let both = Side::ALL.iter().all(|side| !self.is_traced(session, *side));
         if !both || self.settled == [true; 2] {
             return [true; 2];
         }
@@ -166,7 +188,7 @@ impl Compare {
 
     /// Another thread computes a map.
     pub fn is_busy(&self) -> bool {
-        self.maps.is_busy()
+        self.maps.is_busy() || self.preparations.iter().any(Preparations::is_busy)
     }
 
     /// Ends a frame of the window: what nobody looks at is given back.

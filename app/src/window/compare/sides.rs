@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::document::{Curves, Document, Side, Snapshot, resolve};
+use burnish_core::lighting::Layers;
 use burnish_core::scene::Scene;
 
 use crate::window::session::Session;
@@ -14,6 +15,8 @@ pub struct SideScene {
     pub document: Arc<Document>,
     /// What is drawn.
     pub scene: Arc<Scene>,
+    /// What lights it.
+    pub layers: Layers,
     /// Files that are missing there.
     pub missing: usize,
 }
@@ -40,7 +43,8 @@ impl Sides {
         let now = session.document();
         let Some(snapshot) = now.snapshot_of(side) else {
             let missing = session.resolved().missing.len();
-            return SideScene { document: now.clone(), scene: session.scene().clone(), missing };
+            let (document, scene, layers) = (now.clone(), session.scene().clone(), session.layers());
+            return SideScene { document, scene, layers, missing };
         };
         let kept = &mut self.kept[side as usize];
         let fits = |kept: &&mut Kept| {
@@ -55,7 +59,12 @@ impl Sides {
             document.sync(model);
         }
         let resolved = resolve(&document, session.sources(), &mut self.curves);
-        let shown = SideScene { document: Arc::new(document), scene: resolved.scene, missing: resolved.missing.len() };
+        let shown = SideScene {
+            layers: document.lighting.layers(&resolved.object_keys),
+            document: Arc::new(document),
+            scene: resolved.scene,
+            missing: resolved.missing.len(),
+        };
         let (files, model) = (session.files_revision, now.scene.clone());
         *kept = Some(Kept { snapshot: snapshot.clone(), model, files, shown: shown.clone() });
         shown

@@ -6,11 +6,15 @@ use std::sync::Arc;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::file::write_picture;
 use burnish_core::job::{Handle, Job};
+use burnish_core::lighting::{Drawing, Layers, MethodError, Store};
+use burnish_core::picture::Picture;
+use burnish_core::reference::{self, Control, Film, Options, Pass, World};
 use burnish_render::{Gpu, Passes, Renderer, View};
 use eframe::egui;
 use glam::UVec2;
 
 use super::load::name_of;
+use crate::window::preparations::drawn_on_device;
 use crate::window::reference::Look;
 use crate::window::session::Session;
 
@@ -46,7 +50,7 @@ impl ImageSettings {
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         if let Some(size) = self.traced {
             ui.horizontal(|ui| {
-                let hover = "The path-traced picture with the samples that it has now.";
+                let hover = "The picture that the processor refines, with the samples that it has now.";
                 ui.radio_value(&mut self.as_shown, true, "Reference, as shown").on_hover_text(hover);
                 let hover = "Rendered anew by the lighting method, in any size.";
                 ui.radio_value(&mut self.as_shown, false, "Live picture").on_hover_text(hover);
@@ -99,13 +103,13 @@ type Writing = Job<Result<String, String>>;
 /// Starts to write the picture that was asked for. Refuses where there is no whole reference.
 pub fn start(
     session: &Session,
-    (passes, look): (Option<&Arc<Passes>>, Option<&Look>),
+    (passes, look, store): (Option<&Arc<Passes>>, Option<&Look>, Store),
     settings: ImageSettings,
     path: PathBuf,
     ctx: &egui::Context,
 ) -> Result<Writing, String> {
     if !settings.as_shown {
-        return Ok(render(session, passes, settings, path, ctx));
+        return Ok(render(session, (passes, store), settings, path, ctx));
     }
     let look = look.filter(|look| look.whole_size().is_some());
     let picture =
@@ -121,7 +125,7 @@ pub fn start(
 /// Starts to render the document's view into a file, on the window's device where there is one.
 fn render(
     session: &Session,
-    passes: Option<&Arc<Passes>>,
+    (passes, store): (Option<&Arc<Passes>>, Store),
     settings: ImageSettings,
     path: PathBuf,
     ctx: &egui::Context,
@@ -134,10 +138,15 @@ fn render(
         jitter_frames: settings.frames,
     };
     let (tone, exposure_ev) = (document.view.tone.parse().unwrap_or_default(), document.view.exposure_ev as f32);
-    let (passes, waker) = (passes.cloned(), ctx.clone());
+    let (passes, waker, layers) = (passes.cloned(), ctx.clone(), session.layers());
+    let on_processor = (!drawn_on_device(&layers)).then(|| Options::new(&document.lighting.world_settings()));
     let label = format!("Rendering {}", name_of(&path.to_string_lossy()));
     let progress = ctx.clone();
     let work = move |handle: &Handle| {
+        if let Some(options) = on_processor {
+            let drawn = draw(&layers, &World::new(&scene, options), (&store, &view), handle)?;
+            return drawn.map_or(Ok(String::new()), |picture| write(&picture, &path, tone, exposure_ev));
+        }
         let passes = match passes {
             Some(passes) => passes,
             None => Arc::new(Passes::new(&Gpu::new().map_err(|e| e.to_string())?)),
@@ -156,12 +165,25 @@ fn render(
     Job::spawn(label, move || waker.request_repaint(), work)
 }
 
-fn write(
-    picture: &burnish_core::picture::Picture,
-    path: &Path,
-    tone: ToneMap,
-    exposure_ev: f32,
-) -> Result<String, String> {
+/// Draws on the processor, with as many samples of a pixel as frames are asked for; `None` when it is cancelled.
+fn draw(
+    layers: &Layers,
+    world: &World,
+    (store, view): (&Store, &View),
+    job: &Handle,
+) -> Result<Option<Picture>, String> {
+    let prepared = match layers.prepare(store, world, job) {
+        Err(MethodError::Cancelled) => return Ok(None),
+        prepared => prepared.map_err(|e| e.to_string())?,
+    };
+    let drawing = Drawing::of_layers(world, layers, &prepared).ok_or("the method cannot draw on the processor")?;
+    let mut film = Film::new(view.size);
+    let view_of_film = reference::View { camera: view.camera.clone(), size: view.size, seed: 0 };
+    let pass = drawing.draw(&view_of_film, &mut film, view.jitter_frames, &Control::of_job(job));
+    Ok((pass == Pass::Whole).then(|| film.picture()))
+}
+
+fn write(picture: &Picture, path: &Path, tone: ToneMap, exposure_ev: f32) -> Result<String, String> {
     write_picture(picture, path, tone, exposure_ev).map_err(|e| e.to_string())?;
     Ok(format!("Wrote {} ({} x {} pixels)", path.display(), picture.width, picture.height))
 }

@@ -18,6 +18,7 @@ mod watch;
 use std::path::{Path, PathBuf};
 
 use burnish_core::job::{Job, Outcome};
+use burnish_core::lighting;
 use eframe::egui;
 
 use super::commands::Command;
@@ -461,13 +462,24 @@ impl Files {
             Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
             Ask::SaveImage(settings) => {
                 let Context { session, stage, reference, .. } = context;
-                match image::start(session, (stage.passes(), reference.shown()), settings, path, ctx) {
+                match image::start(
+                    session,
+                    (stage.passes(), reference.shown(), self.prepared_store()),
+                    settings,
+                    path,
+                    ctx,
+                ) {
                     Ok(job) => self.picture = Some(job),
                     Err(reason) => self.outbox.push(Request::Error(reason)),
                 }
             }
         }
         ctx.request_repaint();
+    }
+
+    /// Where preparations are kept.
+    pub fn prepared_store(&self) -> lighting::Store {
+        self.folders().map_or_else(lighting::Store::none, |folders| lighting::Store::within(&folders.prepared()))
     }
 
     /// Shows what is being done, with the means to end it.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::chart::Chart;
 use super::compare::Compare;
 use super::preferences::Preferences;
-use super::preparation::Preparation;
+use super::preparations::Preparations;
 use super::reference::Reference;
 use super::request::Requests;
 use super::session::Session;
@@ -49,7 +49,7 @@ pub struct Context<'a> {
     /// The path-traced one.
     pub reference: &'a mut Reference,
     /// What the live method prepares.
-    pub preparation: &'a mut Preparation,
+    pub preparations: &'a mut Preparations,
     /// Two pictures.
     pub compare: &'a mut Compare,
     /// Time against error.

@@ -113,7 +113,12 @@ fn filled_in(session: &Session) -> String {
         (_, Cover::None) => format!("{term}: {filled_by}"),
         _ => format!("{term}: {}", cover.word()),
     });
-    format!("{}; {}", info.id, words.collect::<Vec<_>>().join("; "))
+    let others = match session.layers().iter().count() - 1 {
+        0 => String::new(),
+        1 => "; 1 object lit otherwise, drawn on the processor".into(),
+        count => format!("; {count} objects lit otherwise, drawn on the processor"),
+    };
+    format!("{}; {}{others}", info.id, words.collect::<Vec<_>>().join("; "))
 }
 
 /// What the user should know about document and picture.

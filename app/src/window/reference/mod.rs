@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::document::Document;
-use burnish_core::lighting::{Method, Prepared};
+use burnish_core::lighting::{Layers, Prepared};
 use burnish_core::material::preset::FormChoice;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -39,8 +39,8 @@ pub struct Subject {
 enum By {
     /// The path tracer, with metals in this form.
     Paths(FormChoice),
-    /// A method without a pass on the device, with what it prepared.
-    Points(&'static dyn Method, Arc<Prepared>),
+    /// Methods on the processor, with what they prepared.
+    Points(Layers, Vec<Arc<Prepared>>),
 }
 
 /// A picture of the subject on the desk.
@@ -94,11 +94,10 @@ impl Subject {
         }
     }
 
-    /// The same by the document's method, which draws on the processor.
+    /// The same by the document's methods, on the processor.
     #[must_use]
-    pub fn by_points(self, prepared: Arc<Prepared>) -> Subject {
-        let lighting = &self.document.lighting;
-        Subject { settings: lighting.settings(), by: By::Points(lighting.live_method(), prepared), ..self }
+    pub fn by_points(self, layers: Layers, prepared: Vec<Arc<Prepared>>) -> Subject {
+        Subject { settings: self.document.lighting.world_settings(), by: By::Points(layers, prepared), ..self }
     }
 
     /// Both give the same picture: the metals of a document only count with its scene, which is made anew with them.
@@ -116,8 +115,9 @@ impl By {
     fn is_like(&self, other: &By) -> bool {
         match (self, other) {
             (By::Paths(form), By::Paths(other)) => form == other,
-            (By::Points(method, prepared), By::Points(other, of_other)) => {
-                method.info().id == other.info().id && Arc::ptr_eq(prepared, of_other)
+            (By::Points(layers, prepared), By::Points(other, of_other)) => {
+                let same = prepared.iter().zip(of_other).all(|(a, b)| Arc::ptr_eq(a, b));
+                layers == other && prepared.len() == of_other.len() && same
             }
             _ => false,
         }

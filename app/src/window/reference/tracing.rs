@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use burnish_core::document::Curves;
 use burnish_core::lighting::Drawing;
-use burnish_core::reference::{Film, Pass, View, World, preview_with, trace_with};
+use burnish_core::reference::{Film, Options, Pass, View, World, preview_with, trace_with};
 use glam::UVec2;
 
 use super::desk::{Activity, Desk, Order};
@@ -123,7 +123,7 @@ impl Tracing {
         };
         let drawing = match &subject.by {
             By::Paths(_) => None,
-            By::Points(method, prepared) => Drawing::new(*method, world, prepared, &subject.settings),
+            By::Points(layers, prepared) => Drawing::of_layers(world, layers, prepared),
         };
         let sample = |pixel: UVec2, index: u32| match &drawing {
             Some(drawing) => drawing.sample(&view, pixel, index),
@@ -160,7 +160,15 @@ impl Tracing {
         };
         // A document holds every metal that its materials name.
         let metal = |id: &str| document.metal(id).cloned();
-        self.world = Some(World::of_settings(&scene, settings, self.world.take(), metal).0);
+        let old = self.world.take();
+        self.world = Some(match by {
+            By::Paths(_) => World::of_settings(&scene, settings, old, metal).0,
+            // Methods on the processor know colours only.
+            By::Points(..) => {
+                let options = Options::new(settings);
+                old.map_or_else(|| World::new(&scene, options), |old| old.updated(&scene, options))
+            }
+        });
     }
 
     /// The film as a picture, if the last one is long enough ago.

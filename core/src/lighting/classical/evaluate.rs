@@ -2,23 +2,28 @@
 
 use glam::{Vec2, Vec3};
 
-use super::level;
 use super::sources::Source;
+use super::{level, mean_fresnel_node};
 use crate::math::frame::Frame;
 use crate::math::sampling;
 use crate::surface::coat;
+use crate::surface::fresnel::Fresnel;
 use crate::surface::ggx;
+use crate::surface::ggx::Masking;
 use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN, loss, loss_mean, schlick_ratio};
+use crate::surface::ggx::reflection::sample_curve;
 use crate::surface::layered::{self, Lobe, Surface};
 
 /// What the method looks up. Directions are unit vectors in world space.
 pub trait Maps {
     /// Radiance, box-filtered at a level of the radiance cube.
     fn radiance(&self, direction: Vec3, level: f32) -> Vec3;
-    /// The same without the light of [`Maps::sources`].
+    /// The same without the light of its sources.
     fn dimmed(&self, direction: Vec3, level: f32) -> Vec3;
-    /// Bright sources; directions in world space.
-    fn sources(&self) -> &[Source];
+    /// Bright sources that [`Maps::dimmed`] leaves out.
+    fn source_count(&self) -> usize;
+    /// One of them; its direction in world space.
+    fn source(&self, index: usize) -> Source;
     /// Width from which a bright block is a point to a lobe, see [`super::wide_alpha`].
     fn wide_alpha(&self) -> f32;
     /// Radiance filtered with the lobe of a level of the prefiltered cube.
@@ -29,6 +34,27 @@ pub trait Maps {
     fn radiance_levels(&self) -> f32;
     /// Levels of the prefiltered cube.
     fn prefiltered_levels(&self) -> f32;
+}
+
+/// How the split sum finds the mean of a metal's curve over the light that its lobe reflects.
+#[derive(Clone, Copy, Debug)]
+pub enum MeanFresnel<'a> {
+    /// In closed form, of curves `f0 + (1 - f0)(1 - x)^5`.
+    Schlick,
+    /// In its [`super::mean_fresnel_table`].
+    Table(&'a [f32]),
+    /// From the curve itself, which takes microseconds.
+    Curve,
+}
+
+impl MeanFresnel<'_> {
+    /// That of a curve for which there is no table.
+    pub fn of(fresnel: &Fresnel) -> MeanFresnel<'static> {
+        match fresnel {
+            Fresnel::Rescaled { .. } | Fresnel::Schlick { .. } => MeanFresnel::Schlick,
+            _ => MeanFresnel::Curve,
+        }
+    }
 }
 
 /// How the reflection is computed.
@@ -100,13 +126,12 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[
 
 /// Light of the environment that the surface sends toward the viewer (unit vector, world space).
 ///
-/// `table` is [`super::mean_fresnel_table`] of the surface's curve, `None` for curves `f0 + (1 - f0)(1 - x)^5`;
-/// `base` and `coat_frame` are the frames of the base layer (x along the anisotropy axis) and of the coat.
+/// `mean` says how the split sum finds the mean of the surface's curve; `base` and `coat_frame` are the frames of the base layer (x along the anisotropy axis) and of the coat.
 #[allow(clippy::too_many_arguments, reason = "the argument list of the WGSL twin")]
 pub fn environment(
     maps: &impl Maps,
     s: &Surface,
-    table: Option<&[f32]>,
+    mean: MeanFresnel<'_>,
     base: &Frame,
     coat_frame: &Frame,
     to_viewer: Vec3,
@@ -117,7 +142,7 @@ pub fn environment(
     let width = width(s.alpha);
     let irradiance = occlusion * maps.irradiance(base.n) * std::f32::consts::FRAC_1_PI;
     let reflected = match lobes.samples {
-        0 => split_sum(maps, s, table, base, wo),
+        0 => split_sum(maps, s, mean, base, wo),
         _ => sampled(maps, s, base, wo, lobes),
     };
     let mut value = reflection_occlusion(wo.z, width, occlusion) * reflected;
@@ -140,7 +165,7 @@ pub fn environment(
     };
     let coat_wo = facing(coat_frame.to_local(to_viewer));
     let coat_light = match lobes.samples {
-        0 => split_sum(maps, &top, None, coat_frame, coat_wo),
+        0 => split_sum(maps, &top, MeanFresnel::Schlick, coat_frame, coat_wo),
         _ => sampled(maps, &top, coat_frame, coat_wo, lobes),
     };
     // Once on the way out; the way in is averaged over where the light comes from, close to the same for metals.
@@ -153,7 +178,7 @@ fn facing(wo: Vec3) -> Vec3 {
     Vec3::new(wo.x, wo.y, wo.z.max(1e-3)).normalize()
 }
 
-fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame, wo: Vec3) -> Vec3 {
+fn split_sum(maps: &impl Maps, s: &Surface, mean: MeanFresnel<'_>, base: &Frame, wo: Vec3) -> Vec3 {
     let wo_world = base.to_world(wo);
     let n = bent_normal(base, wo_world, s.alpha);
     // Wide lobes lean toward the normal, where the cosine is larger. The weight was chosen by the error table.
@@ -164,9 +189,10 @@ fn split_sum(maps: &impl Maps, s: &Surface, table: Option<&[f32]>, base: &Frame,
     let e = layered::lobe_albedo(s, wo);
     let ratio = schlick_ratio(wo, s.alpha, s.masking);
     let schlick = s.dielectric_f0.lerp(Vec3::splat(s.dielectric_f90), ratio);
-    let metal = match table {
-        None => s.fresnel.f0().lerp(Vec3::ONE, ratio),
-        Some(table) => mean_fresnel(table, wo.z, width),
+    let metal = match mean {
+        MeanFresnel::Schlick => s.fresnel.f0().lerp(Vec3::ONE, ratio),
+        MeanFresnel::Table(table) => mean_fresnel(table, wo.z, width),
+        MeanFresnel::Curve => mean_fresnel_of(s.fresnel, s.masking, wo.z, width),
     };
     let albedo = e * schlick.lerp(metal, s.metallic);
     albedo * maps.prefiltered(direction, level(roughness, maps.prefiltered_levels()))
@@ -180,16 +206,25 @@ fn width(alpha: Vec2) -> f32 {
 /// Looks up the three grids of [`super::mean_fresnel_table`].
 fn mean_fresnel(table: &[f32], mu: f32, alpha: f32) -> Vec3 {
     let (width, height) = (ALBEDO_MU as usize, ALBEDO_ALPHA as usize);
+    let at = |c: usize, i: usize, j: usize| table.get((c * height + j) * width + i).copied().unwrap_or(0.0);
+    between_nodes(mu, alpha, |i, j| Vec3::new(at(0, i, j), at(1, i, j), at(2, i, j)))
+}
+
+/// The same of a curve whose table nobody made: the four nodes that are needed.
+fn mean_fresnel_of(fresnel: &Fresnel, masking: Masking, mu: f32, alpha: f32) -> Vec3 {
+    let curve = sample_curve(|x| fresnel.eval(x));
+    between_nodes(mu, alpha, |i, j| mean_fresnel_node(&curve, masking, i, j))
+}
+
+/// Linear between the nodes of the grid about a cosine and a width.
+fn between_nodes(mu: f32, alpha: f32, at: impl Fn(usize, usize) -> Vec3) -> Vec3 {
+    let (width, height) = (ALBEDO_MU as usize, ALBEDO_ALPHA as usize);
     let y = (alpha.clamp(ggx::ALPHA_MIN, 1.0).sqrt().sqrt() - ALBEDO_ROOT_MIN) / (1.0 - ALBEDO_ROOT_MIN);
     let (fx, fy) = (mu.clamp(0.0, 1.0).sqrt() * (width - 1) as f32, y.clamp(0.0, 1.0) * (height - 1) as f32);
     let (i, j) = ((fx as usize).min(width - 2), (fy as usize).min(height - 2));
     let (tx, ty) = (fx - i as f32, fy - j as f32);
-    let at = |c: usize, i: usize, j: usize| table.get((c * height + j) * width + i).copied().unwrap_or(0.0);
-    let channel = |c| {
-        let row = |j| at(c, i, j) + (at(c, i + 1, j) - at(c, i, j)) * tx;
-        row(j) + (row(j + 1) - row(j)) * ty
-    };
-    Vec3::new(channel(0), channel(1), channel(2))
+    let row = |j| at(i, j).lerp(at(i + 1, j), tx);
+    row(j).lerp(row(j + 1), ty)
 }
 
 /// Filtered importance sampling of the lobe. A wide lobe's samples would meet a lamp of a few texels or miss it:
@@ -206,7 +241,7 @@ fn sampled(maps: &impl Maps, s: &Surface, base: &Frame, wo: Vec3, lobes: Lobes) 
         sum += weight * layered::reflectance(s, cos_theta) * radiance;
     }
     sum /= lobes.samples as f32;
-    for source in if wide { maps.sources() } else { &[] } {
+    for source in (0..if wide { maps.source_count() } else { 0 }).map(|index| maps.source(index)) {
         let wi = base.to_local(source.direction);
         if wi.z > 0.0 {
             let facet = s.lobe.facet(wo, wi, s.alpha, s.masking);

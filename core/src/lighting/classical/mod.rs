@@ -3,25 +3,32 @@
 //! What the method is and where it is wrong stands in `README.md`. The renderer runs the WGSL twin over cube maps; the
 //! Rust functions here take the maps as a trait, so that tests can put formulas in their place.
 
+mod cubes;
 mod evaluate;
 pub mod exact;
+mod point;
 mod sources;
 #[cfg(test)]
 mod tests;
 
 use std::sync::LazyLock;
 
-use super::{Cover, Coverage, Method, MethodId, MethodInfo, Reads};
+use super::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
+use glam::Vec3;
+
+use crate::job::Handle;
 use crate::leaf::Leaf;
 use crate::material::preset::{FormChoice, Tolerance};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::reference::World;
 use crate::surface::fresnel::Fresnel;
 use crate::surface::ggx::Masking;
 use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
-use crate::surface::ggx::reflection::{CosineWeights, sample_curve};
+use crate::surface::ggx::reflection::{CURVE_SIZE, CosineWeights, sample_curve};
 use crate::surface::layered;
 
-pub use evaluate::{Lobes, Maps, OVERLAP, environment, footprint, prefilter};
+pub use cubes::{CubeSizes, IRRADIANCE_FACE, cube_scale};
+pub use evaluate::{Lobes, Maps, MeanFresnel, OVERLAP, environment, footprint, prefilter};
 pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 
 /// Id of the method, as documents name it.
@@ -43,14 +50,25 @@ static INFO: MethodInfo = MethodInfo {
         indirect_glossy: Cover::None,
         emission: Cover::Exact,
     },
-    // Its cubes are made on the device, see the renderer.
-    reads: Reads::NOTHING,
+    // For pictures on the processor; the device makes cubes of its own.
+    reads: Reads { environment: true, ..Reads::NOTHING },
     revision: 1,
 };
 
 impl Method for Classical {
     fn info(&self) -> &'static MethodInfo {
         &INFO
+    }
+
+    fn prepare(&self, world: &World, _: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        match &world.scene().environment {
+            Some(map) if map.width > 0 && map.height > 0 => cubes::prepare(map, job),
+            _ => Ok(Prepared::nothing()),
+        }
+    }
+
+    fn points(&self) -> Option<&dyn ShadePoint> {
+        Some(self)
     }
 }
 
@@ -225,14 +243,18 @@ static WEIGHTS: LazyLock<[Vec<CosineWeights>; 2]> = LazyLock::new(|| {
     weights
 });
 
+/// A node of [`mean_fresnel_table`]: column `i` of row `j`.
+fn mean_fresnel_node(curve: &[Vec3; CURVE_SIZE], masking: Masking, i: usize, j: usize) -> Vec3 {
+    let weights = &WEIGHTS[masking as usize][j * ALBEDO_MU as usize + i];
+    weights.albedo(curve) / weights.albedo(&[Vec3::ONE; CURVE_SIZE]).max(Vec3::splat(1e-12))
+}
+
 /// Mean of a Fresnel curve over the light that a GGX lobe reflects, as the split sum looks it up: three grids (R, G, B)
 /// of `ALBEDO_ALPHA` rows of `ALBEDO_MU`, over the square root of the cosine and the fourth root of alpha as
 /// the GGX albedo table lays out its Schlick ratio. Multiplied by the albedo for F = 1 it is the directional albedo.
 pub fn mean_fresnel_table(fresnel: &Fresnel, masking: Masking) -> Vec<f32> {
     let curve = sample_curve(|x| fresnel.eval(x));
-    let one = sample_curve(|_| glam::Vec3::ONE);
-    let weights = &WEIGHTS[masking as usize];
-    let means: Vec<_> =
-        weights.iter().map(|w| w.albedo(&curve) / w.albedo(&one).max(glam::Vec3::splat(1e-12))).collect();
+    let nodes = (0..ALBEDO_ALPHA as usize).flat_map(|j| (0..ALBEDO_MU as usize).map(move |i| (i, j)));
+    let means: Vec<_> = nodes.map(|(i, j)| mean_fresnel_node(&curve, masking, i, j)).collect();
     (0..3).flat_map(|c| means.iter().map(move |mean| mean[c])).collect()
 }

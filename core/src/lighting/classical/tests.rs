@@ -32,7 +32,7 @@ fn shade(s: &Surface, cos: f32, samples: u32) -> Vec3 {
     let frame = Frame::new(Vec3::Y);
     let to_viewer = frame.to_world(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos));
     let lobes = Lobes { samples, rotation: Vec2::new(0.3, 0.7) };
-    environment(&Constant(1.0), s, None, &frame, &frame, to_viewer, 1.0, lobes)
+    environment(&Constant(1.0), s, MeanFresnel::Schlick, &frame, &frame, to_viewer, 1.0, lobes)
 }
 
 /// Table error of the albedo (1e-3) and, when sampled, what 256 points leave of the integral.
@@ -112,8 +112,11 @@ impl Maps for Constant {
     fn dimmed(&self, direction: Vec3, level: f32) -> Vec3 {
         self.radiance(direction, level)
     }
-    fn sources(&self) -> &[Source] {
-        &[]
+    fn source_count(&self) -> usize {
+        0
+    }
+    fn source(&self, _: usize) -> Source {
+        Source { direction: Vec3::Y, power: Vec3::ZERO }
     }
     fn wide_alpha(&self) -> f32 {
         0.02
@@ -142,8 +145,11 @@ impl Maps for Tilted {
     fn dimmed(&self, direction: Vec3, level: f32) -> Vec3 {
         self.radiance(direction, level)
     }
-    fn sources(&self) -> &[Source] {
-        &[]
+    fn source_count(&self) -> usize {
+        0
+    }
+    fn source(&self, _: usize) -> Source {
+        Source { direction: Vec3::Y, power: Vec3::ZERO }
     }
     fn wide_alpha(&self) -> f32 {
         0.02

@@ -2,10 +2,8 @@
 
 use std::time::Instant;
 
-use super::truth::form_of;
 use super::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
-use crate::job::Handle;
-use crate::lighting::{Drawing, Method, MethodError, Prepared};
+use crate::lighting::{Drawing, Method, MethodError, Prepared, classical};
 use crate::param::Settings;
 use crate::picture::Picture;
 use crate::reference::{Control, Film, Options, Pass, View, World};
@@ -39,9 +37,9 @@ impl PointTimer {
 
 impl FrameTimer for PointTimer {
     fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
-        let world = World::new(&shot.in_form(form_of(settings)), Options::new(settings));
+        let world = World::new(&shot.in_form(classical::form_choice(settings)), Options::new(settings));
         let start = Instant::now();
-        let prepared = self.method.prepare(&world, settings, &Handle::default()).map_err(|error| match error {
+        let prepared = self.method.prepare(&world, settings, self.control.job()).map_err(|error| match error {
             MethodError::Cancelled => BenchError::Cancelled,
             MethodError::Unfit(reason) => BenchError::Method(reason),
         })?;

@@ -1,32 +1,16 @@
 //! What the processor finds out about an environment before the device builds its cubes. Needs no device.
 
-use burnish_core::lighting::classical::{self, Source, Split};
+use burnish_core::lighting::classical::{self, CubeSizes, Source, Split};
 use burnish_core::math::cube;
 use burnish_core::scene::Environment;
 use glam::{Vec2, Vec3};
 
 use super::TILE;
 
-/// Largest value stored in a cube.
-const STORED_MAX: f32 = 60_000.0;
-/// Largest edge of a face; beyond it the cubes cost more memory than the eye gains.
-const FACE_MAX: u32 = 1024;
-/// Smallest edge of a face: below it there would be too few levels to tell one roughness from another.
-const FACE_MIN: u32 = 64;
-/// Edge of the coarsest prefiltered level: its lobe is a hemisphere wide.
-const COARSEST: u32 = 8;
-/// Edge of the level of radiance from which irradiance is summed.
-const IRRADIANCE_SOURCE: u32 = 32;
-
 /// Everything that the steps on the device need to know.
 pub(super) struct Plan {
     pub environment: Environment,
-    /// Edge of level 0 of the cubes of radiance.
-    pub face: u32,
-    /// Edge of level 0 of the prefiltered cube.
-    pub prefiltered_face: u32,
-    /// Edge of the level of radiance from which irradiance is summed.
-    pub irradiance_source: u32,
+    pub sizes: CubeSizes,
     /// Factor from a texel of a cube to radiance.
     pub scale: f32,
     /// Width from which blocks are points to a lobe.
@@ -57,45 +41,30 @@ pub(super) struct Patch {
 impl Plan {
     /// For the best cubes that the map is worth.
     pub fn new(environment: &Environment) -> Plan {
-        let face = (environment.width / 2).next_power_of_two().clamp(FACE_MIN, FACE_MAX);
-        Plan::with_faces(environment, face, face, IRRADIANCE_SOURCE)
+        Plan::with_sizes(environment, CubeSizes::full(environment.width))
     }
 
     /// For cubes that are made in a moment from a map as [`super::downsampled`] makes it.
     pub fn coarse(environment: &Environment) -> Plan {
-        let face = (environment.width / 2).next_power_of_two().clamp(FACE_MIN, 2 * FACE_MIN);
-        Plan::with_faces(environment, face, FACE_MIN, IRRADIANCE_SOURCE / 2)
+        Plan::with_sizes(environment, CubeSizes::coarse(environment.width))
     }
 
-    fn with_faces(environment: &Environment, face: u32, prefiltered_face: u32, irradiance_source: u32) -> Plan {
-        let largest = environment.texels.iter().map(|c| c.max_element()).fold(0.0, f32::max);
+    fn with_sizes(environment: &Environment, sizes: CubeSizes) -> Plan {
         let block = classical::shading_block(environment.width);
         let dimmed = |block, count| {
             let Split { dimmed, sources } = classical::split(environment, block, count);
             let patches = patches(environment, &dimmed, block);
-            let tiles = tiles(environment, &patches, face);
+            let tiles = tiles(environment, &patches, sizes.radiance);
             Dimmed { sources, patches, tiles }
         };
         Plan {
-            face,
-            prefiltered_face,
-            irradiance_source,
-            scale: (largest / STORED_MAX).max(1.0),
+            sizes,
+            scale: classical::cube_scale(environment),
             wide_alpha: classical::wide_alpha(environment.width, block),
             shading: dimmed(block, classical::SHADING_SOURCES),
             prefilter: dimmed(1, classical::PREFILTER_SOURCES),
             environment: environment.clone(),
         }
-    }
-
-    /// Levels of the cubes of radiance.
-    pub fn levels(&self) -> u32 {
-        self.face.ilog2() + 1
-    }
-
-    /// Levels of the prefiltered cube.
-    pub fn prefiltered_levels(&self) -> u32 {
-        self.prefiltered_face.ilog2() + 1 - COARSEST.ilog2()
     }
 }
 

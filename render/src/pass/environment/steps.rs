@@ -1,6 +1,6 @@
 //! The device's part of building the cubes: a list of tasks that is worked off in slices of any size.
 
-use burnish_core::lighting::classical;
+use burnish_core::lighting::classical::{self, CubeSizes, IRRADIANCE_FACE};
 
 use super::plan::{Dimmed, Patch, Plan, padded};
 use super::resources::{cube, face_of, level_view, map_texture, source_buffer, tile_count};
@@ -9,8 +9,6 @@ use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::layout::types::EnvironmentStep;
 
-/// Edge of a face of the irradiance cube.
-const IRRADIANCE_FACE: u32 = 16;
 /// Workgroups that every adapter takes at once.
 const GROUPS_MAX: u32 = 65_535;
 
@@ -117,7 +115,8 @@ const TILE_TEXELS: f32 = (TILE * TILE) as f32;
 impl Steps {
     /// Allocates the cubes and lists the work.
     pub fn new(gpu: &Gpu, plan: Plan) -> Result<Steps, RenderError> {
-        let (face, levels) = (plan.face, plan.levels());
+        let CubeSizes { radiance: face, prefiltered, .. } = plan.sizes;
+        let levels = plan.sizes.levels();
         let sources = &plan.shading.sources;
         let maps = EnvironmentMaps {
             radiance: cube(gpu, "radiance", face, levels),
@@ -125,7 +124,7 @@ impl Steps {
             sources: source_buffer(gpu, sources, plan.scale),
             source_count: sources.len() as u32,
             wide_alpha: plan.wide_alpha,
-            prefiltered: cube(gpu, "prefiltered", plan.prefiltered_face, plan.prefiltered_levels()),
+            prefiltered: cube(gpu, "prefiltered", prefiltered, plan.sizes.prefiltered_levels()),
             irradiance: cube(gpu, "irradiance", IRRADIANCE_FACE, 1),
             scale: plan.scale,
         };
@@ -150,9 +149,10 @@ impl Steps {
         self.push(Work::Upload, self.map.depth_or_array_layers(), layer as f32 * UPLOAD_COST);
         let radiance = self.maps.radiance.clone();
         self.fill(&radiance, None);
-        let level = self.plan.levels() - 1 - self.plan.irradiance_source.ilog2();
+        let sizes = self.plan.sizes;
+        let level = sizes.levels() - 1 - sizes.irradiance_source.ilog2();
         let irradiance = (self.maps.irradiance.clone(), 0);
-        let loads = 6 * self.plan.irradiance_source.pow(2);
+        let loads = 6 * sizes.irradiance_source.pow(2);
         self.compute(
             Kernel::Irradiance,
             Input::Level(radiance.clone(), level),
@@ -162,7 +162,7 @@ impl Steps {
         let dimmed = self.maps.dimmed.clone();
         self.fill_dimmed(gpu, &dimmed, Part::Shading);
         // Lobes are filtered from what is left without the brightest texels, which are added one by one.
-        let without_texels = cube(gpu, "radiance without its brightest texels", self.plan.face, self.plan.levels());
+        let without_texels = cube(gpu, "radiance without its brightest texels", sizes.radiance, sizes.levels());
         self.push(Work::Patch(Part::Shading, Light::Full), self.plan.shading.patches.len() as u32, PATCH_COST);
         self.fill_dimmed(gpu, &without_texels, Part::Prefilter);
         self.prefilter(gpu, &without_texels);
@@ -210,7 +210,7 @@ impl Steps {
         let bright = (source_buffer(gpu, sources, self.plan.scale), sources.len() as u32);
         let levels = prefiltered.mip_level_count();
         // Level 0 is the mirror.
-        let mirror = (self.plan.face / self.plan.prefiltered_face).ilog2();
+        let mirror = (self.plan.sizes.radiance / self.plan.sizes.prefiltered).ilog2();
         self.copy((&radiance, mirror), (&prefiltered, 0));
         for level in 1..levels {
             let roughness = classical::roughness(level as f32, levels as f32);
@@ -367,7 +367,7 @@ impl Steps {
     ) {
         let Compute { kernel, input, target, lobe, tiles } = compute;
         let params = EnvironmentStep {
-            levels: self.plan.levels() as f32,
+            levels: self.plan.sizes.levels() as f32,
             alpha: lobe.alpha,
             samples: lobe.samples,
             scale: 1.0 / self.plan.scale,

@@ -7,7 +7,7 @@ use burnish_core::reference;
 use eframe::egui::{self, RichText};
 
 use super::super::Context;
-use super::row_ui;
+use super::{overrides, row_ui};
 use crate::window::preparation::State;
 use crate::window::session::Session;
 use crate::window::widget::{choice_ui, columns, name_ui};
@@ -19,6 +19,7 @@ pub fn ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     coverage_ui(ui, method);
     preparation_ui(ui, context);
     settings_ui(ui, context.session);
+    overrides::ui(ui, context.session);
 }
 
 /// The choice of a method; the reference is not among them, it is shown beside every method.
@@ -54,7 +55,8 @@ fn coverage_ui(ui: &mut egui::Ui, method: &dyn Method) {
 
 /// How the preparation stands, and a button to make it anew.
 fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
-    let state = context.preparation.state();
+    let Some(preparation) = context.preparations.first() else { return };
+    let state = preparation.state();
     let (badge, hover) = match state {
         State::Needless => return,
         State::Missing => ("not prepared".into(), "Classical light is shown until the method is prepared."),
@@ -72,20 +74,20 @@ fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
             _ => ui.visuals().weak_text_color(),
         };
         ui.label(RichText::new(badge).small().color(color)).on_hover_text(hover);
-        if let Some((bytes, took)) = context.preparation.cost() {
+        if let Some((bytes, took)) = preparation.cost() {
             let text = format!("{:.1} MB, {:.1} s", bytes as f64 / 1e6, took.as_secs_f64());
             ui.label(RichText::new(text).small().weak())
                 .on_hover_text("Memory, and the time that it took to make or read.");
         }
         match state {
-            State::Working(_) if ui.small_button("Cancel").clicked() => context.preparation.cancel(),
+            State::Working(_) if ui.small_button("Cancel").clicked() => preparation.cancel(),
             State::Stale | State::Missing if ui.small_button("Prepare again").clicked() => {
-                context.preparation.again(ui.ctx());
+                preparation.again(ui.ctx());
             }
             _ => {}
         }
     });
-    if let Some(fault) = context.preparation.fault() {
+    if let Some(fault) = preparation.fault() {
         ui.label(RichText::new(fault).small().color(ui.visuals().error_fg_color));
     }
 }

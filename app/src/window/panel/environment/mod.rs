@@ -3,6 +3,7 @@
 mod camera;
 mod light;
 mod lighting;
+mod overrides;
 mod saved;
 
 use burnish_core::document::Document;

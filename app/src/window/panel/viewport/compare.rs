@@ -64,9 +64,14 @@ pub fn ui(ui: &mut egui::Ui, response: &Response, context: &mut Context<'_>, fra
     if view == CompareView::Error {
         return error_ui(ui, rect, context, frame);
     }
+    let scenes = Side::ALL.map(|side| {
+        let scene = context.compare.sides.get(context.session, side);
+        context.compare.light(side, &scene, ui.ctx());
+        scene
+    });
     let turns = context.compare.turn(context.session);
     let [a, b] = Side::ALL.map(|side| {
-        let scene = context.compare.sides.get(context.session, side);
+        let scene = scenes[side as usize].clone();
         let own = Frame {
             settings: scene.document.lighting.settings(),
             moving: frame.moving || !turns[side as usize],
@@ -115,11 +120,21 @@ fn side_picture(
     frame: &Frame,
 ) -> (Shown, Vec2) {
     let Context { session, stage, reference, compare, .. } = context;
-    let screen = Compare::screen(session, side);
-    if !session.document().compare.side(side).is_reference() {
+    let screen = compare.screen(session, side);
+    if !compare.is_traced(session, side) {
         return (stage.draw_on(screen, &scene.scene, frame), Vec2::ONE);
     }
-    let subject = Subject::new(&scene.document, &scene.scene, &frame.camera, frame.size);
+    let mut subject = Subject::new(&scene.document, &scene.scene, &frame.camera, frame.size);
+    if !session.document().compare.side(side).is_reference() {
+        let preparations = &compare.preparations[side as usize];
+        let Some(prepared) = preparations.prepared(&scene.layers) else {
+            // Until all is prepared, classical light stands in.
+            let message = preparations.fault().map(|fault| format!("Side {}: {fault}.", side.letter()));
+            let shown = stage.draw_on(screen, &scene.scene, frame);
+            return (Shown { message: shown.message.or(message), ..shown }, Vec2::ONE);
+        };
+        subject = subject.by_points(scene.layers.clone(), prepared);
+    }
     let tracer = compare.tracer(reference, session, side);
     if let Some(secs) = tracer.rests_for() {
         ctx.request_repaint_after_secs(secs as f32);
@@ -140,6 +155,7 @@ fn side_text(context: &Context<'_>, side: Side, scene: &SideScene) -> String {
     let timed = context.stage.status().is_some_and(|status| !status.fixed_clock);
     let method = match entry.is_reference() {
         true => context.compare.tracer_of(context.reference, context.session, side).text_of_look(timed),
+        false if context.compare.is_traced(context.session, side) => scene.layers.first().method.info().title.into(),
         false => "live".into(),
     };
     let missing = if scene.missing > 0 { ", files are missing" } else { "" };
@@ -215,11 +231,11 @@ fn wipe_ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>, sides: [&Dr
 fn difference_pictures(context: &mut Context<'_>, frame: &Frame) -> Option<Pictures> {
     let [a, b] = Side::ALL.map(|side| {
         let Context { session, stage, reference, compare, .. } = context;
-        if session.document().compare.side(side).is_reference() {
+        if compare.is_traced(session, side) {
             return traced(compare.tracer_of(reference, session, side).latest());
         }
         let settled = compare.is_side_settled(side);
-        let screen = Compare::screen(session, side);
+        let screen = compare.screen(session, side);
         let picture = compare.maps.live(side, settled, || stage.read(screen, frame.size))?;
         Some(Source { picture, samples: None })
     });
@@ -305,9 +321,9 @@ pub fn radiance(context: &mut Context<'_>, side: Side, at: Vec2) -> Option<Vec3>
     if compare.view().is_some_and(CompareView::has_map) {
         return None;
     }
-    match session.document().compare.side(side).is_reference() {
+    match compare.is_traced(session, side) {
         true => compare.tracer_of(reference, session, side).latest()?.radiance(at),
-        false => stage.radiance(Compare::screen(session, side), at),
+        false => stage.radiance(compare.screen(session, side), at),
     }
 }
 
@@ -316,7 +332,7 @@ pub fn version(context: &Context<'_>, side: Side) -> u64 {
     if context.compare.view().is_some_and(CompareView::has_map) {
         return u64::MAX;
     }
-    let traced = context.session.document().compare.side(side).is_reference();
+    let traced = context.compare.is_traced(context.session, side);
     let look = context.compare.tracer_of(context.reference, context.session, side).latest().filter(|_| traced);
     let settled = u64::from(context.compare.is_side_settled(side));
     // One number for both sides: the pointer may cross the line.

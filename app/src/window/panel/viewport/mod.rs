@@ -18,6 +18,7 @@ use glam::UVec2;
 use super::{Context, DraggedPreset};
 use crate::window::commands::Command;
 use crate::window::compare::CompareView;
+use crate::window::preparations::drawn_on_device;
 use crate::window::reference::{Look, Subject};
 use crate::window::request::Request;
 use crate::window::session::Session;
@@ -280,18 +281,17 @@ fn version(context: &Context<'_>, rect: Rect, point: egui::Pos2, shown: &Shown) 
 /// The reference where there is something of it and it is wanted, else the live picture; with the part of the texture
 /// that is the picture.
 fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Shown, glam::Vec2) {
-    let Context { session, stage, reference, preparation, .. } = context;
+    let Context { session, stage, reference, preparations, .. } = context;
     let scene = session.scene();
     let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
-    let method = session.document().lighting.live_method();
-    let points = method.points().filter(|_| !burnish_render::draws(method.info().id));
-    reference.draw_live(!reference.is_on() && points.is_some());
+    let layers = session.layers();
+    let on_device = drawn_on_device(&layers);
+    reference.draw_live(!reference.is_on() && !on_device);
     if !reference.is_on() {
-        // Until it is prepared, classical light stands in.
-        let Some(prepared) = points.and_then(|_| preparation.prepared(method)) else {
-            return (stage.draw(scene, frame), glam::Vec2::ONE);
-        };
-        subject = subject.by_points(prepared);
+        // Until all is prepared, classical light stands in.
+        let prepared = if on_device { None } else { preparations.prepared(&layers) };
+        let Some(prepared) = prepared else { return (stage.draw(scene, frame), glam::Vec2::ONE) };
+        subject = subject.by_points(layers, prepared);
     }
     if let Some(look) = reference.look(subject, ctx) {
         return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());

@@ -1,4 +1,5 @@
 use burnish_core::document::{self, Document, VIEW_LABEL};
+use burnish_core::lighting::Store;
 use eframe::egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
@@ -7,7 +8,7 @@ use super::*;
 use crate::window::chart::Chart;
 use crate::window::compare::Compare;
 use crate::window::preferences::{Navigation, Preferences};
-use crate::window::preparation::Preparation;
+use crate::window::preparations::Preparations;
 use crate::window::reference::Reference;
 use crate::window::request::Requests;
 use crate::window::stage::Stage;
@@ -35,14 +36,14 @@ fn bench() -> Harness<'static, Bench> {
         preferences: Preferences::default(),
         stage: Stage::Flat,
         reference: Reference::default(),
-        compare: Compare::default(),
+        compare: Compare::new(Store::none()),
         requests: Requests::new(),
     };
     let show = |ui: &mut egui::Ui, bench: &mut Bench| {
         bench.session.now_secs = ui.input(|input| input.time);
         let Bench { panel, session, preferences, stage, reference, compare, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
-        let (preparation, chart) = (&mut Preparation::default(), &mut Chart::new(None));
+        let (preparations, chart) = (&mut Preparations::new(Store::none()), &mut Chart::new(None));
         panel.ui(
             ui,
             &mut Context {
@@ -50,7 +51,7 @@ fn bench() -> Harness<'static, Bench> {
                 preferences,
                 stage,
                 reference,
-                preparation,
+                preparations,
                 compare,
                 chart,
                 requests,

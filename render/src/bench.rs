@@ -1,15 +1,19 @@
 //! Times for the bench: the classical method on the device, and a pass that tells how fast that is just now.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-use burnish_core::lighting::classical;
+use burnish_core::lighting::classical::{self, FrameSettings};
 use burnish_core::lighting::method::MethodId;
+use burnish_core::material::preset::FormChoice;
 use burnish_core::measure::bench::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::reference::Control;
-use burnish_core::scene::{Environment, gallery};
+use burnish_core::scene::{Environment, Scene, gallery};
+use burnish_core::surface::ggx::Masking;
 use glam::{UVec2, Vec3};
 
 use crate::{Gpu, Passes, RenderError, Renderer, View};
@@ -19,7 +23,8 @@ const CALIBRATION_SIZE: UVec2 = UVec2::new(320, 180);
 
 /// A timer for each method that is drawn on the device; `control` ends a picture between two of its frames.
 pub fn timers(passes: &Arc<Passes>, control: &Control) -> Vec<(MethodId, Box<dyn FrameTimer>)> {
-    let classical_timer = ClassicalTimer { passes: passes.clone(), warm: false, control: control.clone() };
+    let classical_timer =
+        ClassicalTimer { passes: passes.clone(), warm: false, control: control.clone(), opened: Vec::new() };
     vec![(MethodId(classical::ID), Box::new(classical_timer))]
 }
 
@@ -43,10 +48,21 @@ struct ClassicalTimer {
     /// The shaders are compiled.
     warm: bool,
     control: Control,
+    /// What was made for the scene that is measured.
+    opened: Vec<Opened>,
+}
+
+/// A scene on the device, for all settings that look up the same.
+struct Opened {
+    scene: Arc<Scene>,
+    form: FormChoice,
+    masking: Masking,
+    renderer: Rc<RefCell<Renderer>>,
+    preparation: Preparation,
 }
 
 struct ClassicalFrames {
-    renderer: Renderer,
+    renderer: Rc<RefCell<Renderer>>,
     view: View,
     preparation: Preparation,
     control: Control,
@@ -54,8 +70,19 @@ struct ClassicalFrames {
 
 impl FrameTimer for ClassicalTimer {
     fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
-        let scene = shot.in_form(classical::form_choice(settings));
+        let (form, masking) = (classical::form_choice(settings), FrameSettings::new(settings).masking);
+        self.opened.retain(|opened| Arc::ptr_eq(&opened.scene, &shot.scene));
         let view = View { size: shot.size, camera: shot.camera.clone(), settings: settings.clone(), jitter_frames: 1 };
+        let frames = |opened: &Opened| ClassicalFrames {
+            renderer: opened.renderer.clone(),
+            view: view.clone(),
+            preparation: opened.preparation,
+            control: self.control.clone(),
+        };
+        if let Some(opened) = self.opened.iter().find(|opened| opened.form == form && opened.masking == masking) {
+            return Ok(Box::new(frames(opened)));
+        }
+        let scene = shot.in_form(form);
         if !std::mem::replace(&mut self.warm, true) {
             Renderer::with_passes(&self.passes, &scene).and_then(|mut r| r.time_frame(&view)).map_err(words)?;
         }
@@ -65,8 +92,11 @@ impl FrameTimer for ClassicalTimer {
         self.passes.gpu.wait().map_err(|e| BenchError::Method(e.to_string()))?;
         let secs = start.elapsed().as_secs_f64();
         let bytes = before.zip(allocated(&self.passes.gpu)).map(|(before, after)| after.saturating_sub(before));
-        let preparation = Preparation { secs, bytes };
-        Ok(Box::new(ClassicalFrames { renderer, view, preparation, control: self.control.clone() }))
+        let (renderer, preparation) = (Rc::new(RefCell::new(renderer)), Preparation { secs, bytes });
+        let opened = Opened { scene: shot.scene.clone(), form, masking, renderer, preparation };
+        let drawn = frames(&opened);
+        self.opened.push(opened);
+        Ok(Box::new(drawn))
     }
 }
 
@@ -76,12 +106,13 @@ impl Frames for ClassicalFrames {
     }
 
     fn frame(&mut self) -> Result<f64, BenchError> {
-        self.renderer.time_frame(&self.view).map_err(words)
+        self.renderer.borrow_mut().time_frame(&self.view).map_err(words)
     }
 
     fn picture(&mut self) -> Result<Picture, BenchError> {
         let view = View { jitter_frames: COMPARED_FRAMES, ..self.view.clone() };
-        let picture = self.renderer.render_while(&view, |_| !self.control.is_cancelled()).map_err(words)?;
+        let picture =
+            self.renderer.borrow_mut().render_while(&view, |_| !self.control.is_cancelled()).map_err(words)?;
         picture.ok_or(BenchError::Cancelled)
     }
 }

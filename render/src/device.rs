@@ -87,7 +87,10 @@ impl Failure {
 
 /// Features that are used where they exist.
 fn optional_features() -> Features {
-    Features::FLOAT32_FILTERABLE | Features::FLOAT32_BLENDABLE | Features::TIMESTAMP_QUERY
+    Features::FLOAT32_FILTERABLE
+        | Features::FLOAT32_BLENDABLE
+        | Features::TIMESTAMP_QUERY
+        | Features::TIMESTAMP_QUERY_INSIDE_ENCODERS
 }
 
 /// Backends that Burnish runs on. OpenGL is left out: its cube faces cannot be rendered to reliably, and lights and

@@ -5,6 +5,7 @@
 //! the passes that join and run them.
 
 pub mod bench;
+mod clock;
 pub mod device;
 pub mod error;
 mod frame;

@@ -11,6 +11,7 @@ use burnish_core::scene::{Camera, Scene};
 use burnish_core::surface::ggx::Masking;
 use glam::{UVec2, Vec4};
 
+use crate::clock::DeviceClock;
 use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::frame::{Encoding, Jitter, Targets};
@@ -82,21 +83,30 @@ impl Renderer {
         self.set_scene(&Arc::new(scene))
     }
 
-    /// Draws the first frame of a view and returns its seconds: from giving it to the device until that has
-    /// drawn it. On a card that takes in the way to it and back.
+    /// Draws the first frame of a view and returns its seconds: by the time stamps of a card that has them, else from giving
+    /// it to the device until that has drawn it.
     pub fn time_frame(&mut self, view: &View) -> Result<f64, RenderError> {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, sums) = self.begin(&passes, view)?;
         let settings = FrameSettings::new(&view.settings);
+        // Stamps of a software rasteriser mean little.
+        let clock = if gpu.is_software() { None } else { DeviceClock::new(gpu) };
         let start = Instant::now();
         let jitter = Jitter { frame: 0, frames: 1 };
         let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, &settings, jitter);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        clock.iter().for_each(|clock| clock.start(&mut encoder));
         encoding.whole(&passes, &mut encoder, &self.resident, &targets);
+        clock.iter().for_each(|clock| clock.stop(&mut encoder));
         gpu.queue.submit([encoder.finish()]);
-        gpu.wait()?;
-        let secs = start.elapsed().as_secs_f64();
+        let secs = match clock {
+            Some(clock) => clock.secs(gpu)?,
+            None => {
+                gpu.wait()?;
+                start.elapsed().as_secs_f64()
+            }
+        };
         gpu.check()?;
         self.targets = Some((targets, sums));
         Ok(secs)

@@ -58,6 +58,12 @@ pub(super) struct Emitters {
 const NONE: u32 = u32::MAX;
 
 impl Emitters {
+    /// Memory of its lists.
+    pub(super) fn bytes(&self) -> usize {
+        let places: usize = self.places.values().map(|list| size_of_val(&list[..])).sum();
+        size_of_val(&self.list[..]) + size_of_val(&self.shares[..]) + places
+    }
+
     /// Those of the visible instances.
     pub(super) fn new(scene: &Scene) -> Emitters {
         let mut emitters = Emitters { shares: vec![0.0], ..Emitters::default() };

@@ -99,6 +99,11 @@ impl Lights {
         Lights { sky, emitters: Arc::new(Emitters::new(scene)) }
     }
 
+    /// Memory of what light is drawn by.
+    pub(super) fn bytes(&self) -> usize {
+        self.sky.as_ref().map_or(0, Sky::bytes) + self.emitters.bytes()
+    }
+
     /// Radiance of the sky.
     pub(super) fn sky(&self, direction: Vec3) -> Vec3 {
         self.sky.as_ref().map_or(Vec3::ZERO, |sky| sky.radiance(direction))

@@ -48,6 +48,12 @@ struct Tables {
 }
 
 impl Sky {
+    /// Memory of its tables; the map is the scene's.
+    pub fn bytes(&self) -> usize {
+        let Tables { weights, rows, columns, edges, .. } = &*self.tables;
+        size_of_val(&weights[..]) + size_of_val(&rows[..]) + size_of_val(&columns[..]) + size_of_val(&edges[..])
+    }
+
     /// Makes a map ready.
     pub fn new(map: &Arc<Environment>) -> Sky {
         Sky { map: map.clone(), tables: Arc::new(Tables::new(map)) }

@@ -138,6 +138,12 @@ impl World {
         &self.scene
     }
 
+    /// Memory of what was made of the scene, which itself is not counted: trees, densities of light, places of instances.
+    pub fn bytes(&self) -> u64 {
+        let instances = size_of_val(&self.instances[..]) + size_of_val(&self.fresnel_means[..]);
+        (self.accel.bytes() + self.lights.bytes() + instances) as u64
+    }
+
     /// The settings.
     pub fn options(&self) -> &Options {
         &self.options

@@ -30,7 +30,7 @@ impl FrameTimer for PathTimer {
     fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
         let start = Instant::now();
         let world = world_of(shot, settings);
-        let preparation = Preparation { secs: start.elapsed().as_secs_f64(), bytes: None };
+        let preparation = Preparation { secs: start.elapsed().as_secs_f64(), bytes: Some(world.bytes()) };
         let samples = match settings.get("samples") {
             Some(ParamValue::Integer(n)) => u32::try_from(n).unwrap_or(1).max(1),
             _ => 1,

@@ -5,19 +5,15 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use burnish_core::color::tone::ToneMap;
-use burnish_core::export::gltf::{self, Encoded};
-use burnish_core::file::{write_atomic, write_picture};
 use burnish_core::param::ParamSpec;
-use burnish_core::picture::Picture;
 use burnish_core::reference::MAX_SAMPLES;
 use burnish_core::scene::Scene;
 use burnish_core::scene::gallery::{self, GalleryScene};
 use glam::UVec2;
 use serde_json::{Value, json};
 
-use super::{render, write_json};
-use crate::failure::{Exit, Failure, printable};
+use super::{glb, render, write_json};
+use crate::failure::{Exit, Failure};
 use crate::value;
 
 #[derive(clap::Args)]
@@ -134,23 +130,10 @@ fn pictures(args: &RenderArgs, out: &mut dyn Write, err: &mut dyn Write) -> Resu
 
 fn models(args: &ExportArgs, out: &mut dyn Write) -> Result<Exit, Failure> {
     for (name, scene) in scenes(&args.names, args.all, &args.out)? {
-        let Encoded { glb, report } = gltf::encode(&scene).map_err(Failure::resources)?;
-        for note in &report.notes {
-            let line = format!("{name}: {}: {}: {}", note.element, note.loss.word(), note.what);
-            writeln!(out, "{}", printable(&line))?;
-        }
         let file = args.out.join(stem(&name) + ".glb");
-        write_atomic(&file, &glb).map_err(Failure::resources)?;
-        writeln!(out, "wrote {}", file.display())?;
-        if let Some(map) = &scene.environment {
-            let file = args.out.join(stem(&name) + ".exr");
-            let texels = map.texels.iter().map(|radiance| (map.strength * *radiance).extend(1.0)).collect();
-            let picture = Picture { width: map.width, height: map.height, texels };
-            write_picture(&picture, &file, ToneMap::None, 0.0).map_err(Failure::resources)?;
-            let degrees = map.rotation.to_degrees();
-            let turned = if degrees == 0.0 { String::new() } else { format!(", to be turned by {degrees} degrees") };
-            writeln!(out, "wrote {}{turned}", file.display())?;
-        }
+        let report = glb::write(&scene, &file)?;
+        glb::write_notes(out, Some(&name), &report.notes)?;
+        glb::write_files(out, &file, &report)?;
     }
     Ok(Exit::Ok)
 }

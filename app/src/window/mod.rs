@@ -18,6 +18,7 @@ mod panel;
 mod preferences;
 mod preparation;
 mod reference;
+mod rename;
 mod request;
 mod session;
 mod shortcuts;

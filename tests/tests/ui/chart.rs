@@ -46,6 +46,7 @@ fn record(method: &str, samples: u32, ms: f64, relmse: f64) -> Record {
         errors: [relmse * 0.7, relmse, relmse * 0.4].map(|relmse| Some(errors(relmse))),
         floors: [Some(floor); 3],
         truth_samples: 256,
+        truth_settings: Vec::new(),
     }
 }
 

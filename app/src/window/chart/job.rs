@@ -4,9 +4,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use burnish_core::job::{Handle, Job};
-use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, Record, Shot};
-use burnish_core::reference::Control;
-use burnish_render::Gpu;
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, News, Record, Shot};
+use burnish_core::param::Settings;
+use burnish_core::reference::{self, Control};
 use eframe::egui;
 
 use crate::rig;
@@ -61,26 +61,28 @@ pub fn start(order: Order, ctx: &egui::Context) -> (Job<Measured>, Words) {
 fn measure(order: &Order, handle: &Handle, tell: &dyn Fn(String)) -> Measured {
     let Order { shot, candidates, samples, cache } = order;
     let control = Control::of_job(handle);
-    tell("opening the graphics device".into());
-    let gpu = Gpu::new().map_err(words)?;
-    let mut rig = rig::rig(&gpu, &control)?;
+    tell("looking for a graphics device".into());
+    let mut rig = rig::rig(&control)?;
     let truth = {
         // One core is left for the window. Timing has all: the command line measures so, and its results are shared.
         let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
         let pool =
             rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build().map_err(words)?;
+        let settings = Settings::new(reference::PARAMS);
         let mut halves = Halves::default();
-        rig::truth(shot, *samples, (cache, &control), Some(&pool), || {
+        rig::truth(shot, &settings, *samples, (cache, &control), Some(&pool), || {
             let done = halves.done(control.progress());
             tell(format!("tracing the reference, {samples} paths a pixel: {:.0} %", 100.0 * done));
         })?
     };
     let name = format!("{}: ", shot.name);
-    bench::measure(shot, &truth, candidates, &mut rig, cache, &mut |text| {
+    bench::measure(shot, &truth, candidates, &mut rig, cache, &mut |news| {
         if handle.is_cancelled() {
             return Err(BenchError::Cancelled);
         }
-        tell(text.strip_prefix(&name).unwrap_or(text).into());
+        if let News::Next(text) = news {
+            tell(text.strip_prefix(&name).unwrap_or(text).into());
+        }
         Ok(())
     })
 }

@@ -176,14 +176,15 @@ fn pick_ui(ui: &mut egui::Ui, picked: Option<&Mark>) -> Option<Side> {
 fn details(record: &Record) -> String {
     let memory = record.bytes.map_or_else(|| "unknown".into(), |bytes| format!("{} MB", short(bytes as f64 / 1e6)));
     let mut text = format!(
-        "{} ms a frame, {} x calibration, {} frames\nprepared in {} s, memory {memory}\n{} x {} pixels, reference of {} paths",
+        "{} ms a frame, {} x calibration, {} frames\nprepared in {} s, memory {memory}\n{} x {} pixels, reference of {} paths{}",
         short(1e3 * record.frame_secs),
         short(record.ratio()),
         record.frames,
         short(record.prepare_secs),
         record.width,
         record.height,
-        record.truth_samples
+        record.truth_samples,
+        record.truth_text()
     );
     for (region, name) in REGIONS {
         let Some((errors, _)) = record.of(region) else { continue };

@@ -4,16 +4,25 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::{self, MethodId};
-use burnish_core::measure::bench::{BenchError, Cache, PathTimer, PointTimer, Rig, Shot, Truth};
+use burnish_core::measure::bench::{BenchError, Cache, PathTimer, PointTimer, Rig, Shot, Tools, Truth};
 use burnish_core::param::Settings;
 use burnish_core::reference::{self, Control};
-use burnish_render::{Gpu, Passes};
+use burnish_render::device::{ACCEPTED, choose};
+use burnish_render::{Gpu, GpuError, Passes};
+use eframe::wgpu;
 
 use crate::interrupt;
 
-/// A timer for every method of the program; `control` ends what they draw.
-pub fn rig<'a>(gpu: &Gpu, control: &Control) -> Result<Rig<'a>, BenchError> {
-    let passes = Arc::new(Passes::new(gpu));
+/// A timer for every method of the program; `control` ends what they draw. The adapter is only looked for: it is opened
+/// when something must be drawn on it, and never where all is known.
+pub fn rig(control: &Control) -> Result<Rig<'static>, BenchError> {
+    let control = control.clone();
+    Ok(Rig::new(adapter_name().map_err(words)?, move || tools(&control)))
+}
+
+/// Opens the adapter and compiles what measures time on it.
+fn tools(control: &Control) -> Result<Tools<'static>, BenchError> {
+    let passes = Arc::new(Passes::new(&Gpu::new().map_err(words)?));
     let mut timers = burnish_render::bench::timers(&passes, control);
     timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
     for method in lighting::methods() {
@@ -22,22 +31,49 @@ pub fn rig<'a>(gpu: &Gpu, control: &Control) -> Result<Rig<'a>, BenchError> {
         }
     }
     let calibrate = burnish_render::bench::calibration(&passes)?;
-    Ok(Rig { timers, calibrate: Box::new(calibrate), machine: gpu.report().name.clone() })
+    Ok(Tools { timers, calibrate: Box::new(calibrate) })
 }
 
-/// Traces what all are judged by, on the threads of a pool or of all; `meanwhile` is called again and again until it is
+/// The name of the adapter that would be opened.
+fn adapter_name() -> Result<String, GpuError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = ACCEPTED;
+    let adapters = pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(wgpu::Backends::all()));
+    Ok(choose(&adapters, |_| true)?.get_info().name)
+}
+
+fn words(error: GpuError) -> BenchError {
+    BenchError::Method(error.to_string())
+}
+
+/// Traces what all are judged by with settings of the reference, on the threads of a pool or of all; `meanwhile` is called again and again until it is
 /// done.
 pub fn truth(
     shot: &Shot,
+    settings: &Settings,
     samples: u32,
     (cache, control): (&Cache, &Control),
     pool: Option<&rayon::ThreadPool>,
     meanwhile: impl FnMut(),
 ) -> Result<Truth, BenchError> {
-    let settings = Settings::new(reference::PARAMS);
-    let trace = || Truth::trace(shot, &settings, samples, cache, control);
+    let trace = || Truth::trace(shot, settings, samples, cache, control);
     interrupt::meanwhile(meanwhile, || match pool {
         Some(pool) => pool.install(trace),
         None => trace(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_adapter_that_is_looked_for_is_the_one_that_is_opened() {
+        // Machines without one run this too.
+        let Ok(name) = adapter_name() else { return };
+        let control = Control::default();
+        let rig = rig(&control).unwrap();
+        assert!(!rig.is_open(), "it is only looked for");
+        assert_eq!(Gpu::new().unwrap().report().name, name);
+    }
 }

@@ -46,6 +46,11 @@ impl SceneArg {
     pub fn open(&self) -> Result<Opened, Failure> {
         open(&self.scene)
     }
+
+    /// The file that is named, if it is one.
+    pub fn file(&self) -> Option<&Path> {
+        gallery_name(&self.scene).is_none().then(|| Path::new(&self.scene))
+    }
 }
 
 /// Opens a SCENE.

@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use burnish_core::file::write_atomic;
 use burnish_core::lighting;
 use burnish_core::lighting::method::{self, Method, Sweep};
-use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, Record, Rig, Shot};
-use burnish_core::reference::Control;
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, News, Record, Rig, Shot};
+use burnish_core::param::Settings;
+use burnish_core::reference::{self, Control};
 use burnish_core::scene::{Scene, gallery};
-use burnish_render::Gpu;
 use glam::UVec2;
 
 use crate::failure::{Exit, Failure, printable};
@@ -45,6 +45,9 @@ pub struct Args {
     /// Paths through a pixel of the reference, 2 to 16777216
     #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     samples: u32,
+    /// Setting of the reference that all are judged by, such as bounces=8; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
+    truth: Vec<(String, String)>,
     /// Measure everything anew: read nothing that was kept from earlier runs
     #[arg(long)]
     fresh: bool,
@@ -65,17 +68,17 @@ pub struct Args {
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
     let chosen = methods(&args.methods)?;
     let candidates = candidates(&chosen, &args.sweep)?;
+    let truth = truth(&args.truth)?;
     let shots = shots(&args, err)?;
     let cache = cache(&args)?;
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let control = Control::default();
-    let gpu = Gpu::new().map_err(Failure::resources)?;
-    let mut rig = rig::rig(&gpu, &control).map_err(Failure::resources)?;
+    let mut rig = rig::rig(&control).map_err(Failure::resources)?;
 
     let mut records = Vec::new();
     let mut failed = None;
     for shot in &shots {
-        match measure(shot, &candidates, &args, &mut rig, &cache, (&stop, &control), err) {
+        match measure(shot, &candidates, (&truth, args.samples), &mut rig, &cache, (&stop, &control), err) {
             Ok(more) => records.extend(more),
             Err(error) => {
                 failed = Some(failure(&shot.name, &error));
@@ -110,6 +113,18 @@ fn candidates(methods: &[&dyn Method], sweeps: &[Sweep]) -> Result<Vec<Candidate
         list.extend(all.into_iter().map(|settings| Candidate { method: chosen.info().id, settings }));
     }
     Ok(list)
+}
+
+/// Settings of the reference.
+fn truth(choices: &[(String, String)]) -> Result<Settings, Failure> {
+    let mut settings = Settings::new(reference::PARAMS);
+    for (key, value) in choices {
+        if key == "samples" {
+            return Err(Failure::usage(format!("--truth {key}={value}: write it as --samples {value}")));
+        }
+        settings.set(key, value).map_err(|e| Failure::usage(format!("--truth {key}={value}: {e}")))?;
+    }
+    Ok(settings)
 }
 
 fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
@@ -197,7 +212,7 @@ fn cache(args: &Args) -> Result<Cache, Failure> {
 fn measure(
     shot: &Shot,
     candidates: &[Candidate],
-    args: &Args,
+    (settings, samples): (&Settings, u32),
     rig: &mut Rig<'_>,
     cache: &Cache,
     (stop, control): (&AtomicBool, &Control),
@@ -217,12 +232,15 @@ fn measure(
         Ok(())
     };
     progress(&format!("{}: tracing the reference", shot.name))?;
-    let truth = rig::truth(shot, args.samples, (cache, control), None, || {
+    let truth = rig::truth(shot, settings, samples, (cache, control), None, || {
         if stop.load(Ordering::Relaxed) {
             control.cancel();
         }
     })?;
-    bench::measure(shot, &truth, candidates, rig, cache, &mut progress)
+    bench::measure(shot, &truth, candidates, rig, cache, &mut |news| match news {
+        News::Next(words) => progress(words),
+        News::Done(..) => Ok(()),
+    })
 }
 
 fn failure(scene: &str, error: &BenchError) -> Failure {

@@ -5,19 +5,15 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use burnish_core::color::tone::ToneMap;
-use burnish_core::export::gltf::{self, Encoded};
-use burnish_core::file::{write_atomic, write_picture};
 use burnish_core::param::ParamSpec;
-use burnish_core::picture::Picture;
 use burnish_core::reference::MAX_SAMPLES;
 use burnish_core::scene::Scene;
 use burnish_core::scene::gallery::{self, GalleryScene};
 use glam::UVec2;
 use serde_json::{Value, json};
 
-use super::{render, write_json};
-use crate::failure::{Exit, Failure, printable};
+use super::{glb, render, write_json};
+use crate::failure::{Exit, Failure};
 use crate::value;
 
 #[derive(clap::Args)]
@@ -34,36 +30,30 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Render scenes by the reference, one picture each
+    /// Render scenes by the reference, one picture NAME.png each
     Render(RenderArgs),
     /// Write scenes as NAME.glb, with their environments as NAME.exr, and tell what glTF cannot hold
-    Export(ExportArgs),
+    Export(ChosenArgs),
 }
 
+/// Which scenes, and where what is made of them goes.
 #[derive(clap::Args)]
-struct ExportArgs {
+struct ChosenArgs {
     /// Scenes: NAME[?key=value&...]
     #[arg(value_name = "NAME", required_unless_present = "all", conflicts_with = "all")]
     names: Vec<String>,
     /// Every scene, with its default settings
     #[arg(long)]
     all: bool,
-    /// Folder for the files; made where it is missing
+    /// Folder for the files, which are called NAME; made where it is missing
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
 
 #[derive(clap::Args)]
 struct RenderArgs {
-    /// Scenes: NAME[?key=value&...]
-    #[arg(value_name = "NAME", required_unless_present = "all", conflicts_with = "all")]
-    names: Vec<String>,
-    /// Every scene, with its default settings
-    #[arg(long)]
-    all: bool,
-    /// Folder for the pictures, NAME.png each; made where it is missing
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    #[command(flatten)]
+    chosen: ChosenArgs,
     /// Samples of every pixel, 1 to 16777216
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     samples: u32,
@@ -122,8 +112,8 @@ fn default_text(spec: &ParamSpec) -> String {
 }
 
 fn pictures(args: &RenderArgs, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    for (scene, _) in scenes(&args.names, args.all, &args.out)? {
-        let file = args.out.join(stem(&scene) + ".png");
+    for (scene, _) in args.chosen.scenes()? {
+        let file = args.chosen.out.join(stem(&scene) + ".png");
         let exit = render::reference_picture(&format!("gallery:{scene}"), args.size, args.samples, file, out, err)?;
         if exit != Exit::Ok {
             return Ok(exit);
@@ -132,51 +122,42 @@ fn pictures(args: &RenderArgs, out: &mut dyn Write, err: &mut dyn Write) -> Resu
     Ok(Exit::Ok)
 }
 
-fn models(args: &ExportArgs, out: &mut dyn Write) -> Result<Exit, Failure> {
-    for (name, scene) in scenes(&args.names, args.all, &args.out)? {
-        let Encoded { glb, report } = gltf::encode(&scene).map_err(Failure::resources)?;
-        for note in &report.notes {
-            let line = format!("{name}: {}: {}: {}", note.element, note.loss.word(), note.what);
-            writeln!(out, "{}", printable(&line))?;
-        }
+fn models(args: &ChosenArgs, out: &mut dyn Write) -> Result<Exit, Failure> {
+    for (name, scene) in args.scenes()? {
         let file = args.out.join(stem(&name) + ".glb");
-        write_atomic(&file, &glb).map_err(Failure::resources)?;
-        writeln!(out, "wrote {}", file.display())?;
-        if let Some(map) = &scene.environment {
-            let file = args.out.join(stem(&name) + ".exr");
-            let texels = map.texels.iter().map(|radiance| (map.strength * *radiance).extend(1.0)).collect();
-            let picture = Picture { width: map.width, height: map.height, texels };
-            write_picture(&picture, &file, ToneMap::None, 0.0).map_err(Failure::resources)?;
-            let degrees = map.rotation.to_degrees();
-            let turned = if degrees == 0.0 { String::new() } else { format!(", to be turned by {degrees} degrees") };
-            writeln!(out, "wrote {}{turned}", file.display())?;
-        }
+        let report = glb::write(&scene, &file)?;
+        glb::write_notes(out, Some(&name), &report.notes)?;
+        glb::write_files(out, &file, &report)?;
     }
     Ok(Exit::Ok)
 }
 
-/// The scenes that are asked for, without the word before their names. Everything that can be refused is, before the
-/// first is worked on.
-fn scenes(names: &[String], all: bool, folder: &Path) -> Result<Vec<(String, Scene)>, Failure> {
-    let names: Vec<String> = match all {
-        true => gallery::list().iter().map(|scene| scene.name.to_string()).collect(),
-        false => names.to_vec(),
-    };
-    let mut stems = BTreeSet::new();
-    let mut list = Vec::new();
-    for name in names {
-        let plain = name.strip_prefix("gallery:").unwrap_or(&name).to_string();
-        let scene = gallery::open(&plain).map_err(|e| Failure::input(Path::new(&name), e))?;
-        if !stems.insert(stem(&plain)) {
-            return Err(Failure::usage(format!(
-                "{name}: its file is that of another scene of the list; leave one out"
-            )));
+impl ChosenArgs {
+    /// The scenes that are asked for, without the word before their names. Everything that can be refused is, before the
+    /// first is worked on.
+    fn scenes(&self) -> Result<Vec<(String, Scene)>, Failure> {
+        let ChosenArgs { names, all, out } = self;
+        let names: Vec<String> = match all {
+            true => gallery::list().iter().map(|scene| scene.name.to_string()).collect(),
+            false => names.clone(),
+        };
+        let mut stems = BTreeSet::new();
+        let mut list = Vec::new();
+        for name in names {
+            let plain = name.strip_prefix("gallery:").unwrap_or(&name).to_string();
+            let scene = gallery::open(&plain).map_err(|e| Failure::input(Path::new(&name), e))?;
+            if !stems.insert(stem(&plain)) {
+                return Err(Failure::usage(format!(
+                    "{name}: its file is that of another scene of the list; leave one out"
+                )));
+            }
+            list.push((plain, scene));
         }
-        list.push((plain, scene));
+        let failure =
+            |e: std::io::Error| Failure::resources(format!("{}: cannot be made a folder: {e}", out.display()));
+        fs::create_dir_all(out).map_err(failure)?;
+        Ok(list)
     }
-    let failure = |e: std::io::Error| Failure::resources(format!("{}: cannot be made a folder: {e}", folder.display()));
-    fs::create_dir_all(folder).map_err(failure)?;
-    Ok(list)
 }
 
 /// Name of a file for a scene: its name, then its settings with hyphens between.

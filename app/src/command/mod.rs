@@ -9,6 +9,7 @@ mod fresnel_balls;
 mod fresnel_report;
 mod fresnel_times;
 mod gallery;
+mod glb;
 mod info;
 mod measure;
 mod methods;
@@ -30,7 +31,7 @@ use crate::failure::{Exit, Failure};
 pub enum Command {
     /// Render a scene to a picture
     Render(render::Args),
-    /// Write a scene for another renderer, with a report of what that cannot hold
+    /// Write a scene for another renderer or viewer, with a report of what that cannot hold
     Export(export::Args),
     /// List, render or write the built-in scenes
     Gallery(gallery::Args),

@@ -14,6 +14,9 @@ use crate::failure::Failure;
 use crate::source::{self, Opened, SceneArg};
 use crate::value::{self, CameraChoice, MetalChoice};
 
+/// Pixels of a picture where nothing is said of them.
+const SIZE: UVec2 = UVec2::new(1280, 720);
+
 /// The options of every command that looks at a scene.
 #[derive(clap::Args)]
 pub struct StageArgs {
@@ -37,9 +40,9 @@ pub struct StageArgs {
     /// Anisotropy strength, 0 to 1, of the same materials
     #[arg(long, value_name = "A", value_parser = value::number(0.0, 1.0))]
     anisotropy: Option<f32>,
-    /// Pixels of the picture
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = value::size)]
-    size: UVec2,
+    /// Pixels of the picture [default: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = value::size)]
+    size: Option<UVec2>,
     /// Eye and target in metres and the vertical angle in degrees [default: the document's view; of a model all; a gallery scene's first]
     #[arg(long, value_name = "NAME|#INDEX|EX,EY,EZ,TX,TY,TZ,FOV", value_parser = value::camera, allow_hyphen_values = true)]
     camera: Option<CameraChoice>,
@@ -79,9 +82,19 @@ impl StageArgs {
             coat: Vec::new(),
             roughness: None,
             anisotropy: None,
-            size,
+            size: Some(size),
             camera: None,
         }
+    }
+
+    /// Whether `--size` is there.
+    pub fn is_sized(&self) -> bool {
+        self.size.is_some()
+    }
+
+    /// SCENE and the environment map, where they are files.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.scene.file().map(PathBuf::from).into_iter().chain(self.env.clone()).collect()
     }
 
     /// Opens SCENE; a document must have all of its files.
@@ -91,10 +104,11 @@ impl StageArgs {
 
     /// Makes the changes that the options ask for, metals in the form `choice`.
     pub fn set(&self, mut opened: Opened, choice: FormChoice, forms: Forms) -> Result<Staged, Failure> {
+        let size = self.size.unwrap_or(SIZE);
         let environment = self.env.as_deref().map(source::environment).transpose()?;
         opened.light(environment.as_ref());
         // Of the scene as it came: materials do not move it.
-        let usual = opened.camera(self.size);
+        let usual = opened.camera(size);
         let Opened { mut scene, mut notices, document, .. } = opened;
         if let (Some(document), Forms::OfAll) = (&document, forms) {
             scene = Arc::unwrap_or_clone(document.in_form(&scene, choice, &mut Curves::default()));
@@ -105,7 +119,7 @@ impl StageArgs {
         let mut metals = BTreeMap::new();
         notices.extend(self.set_materials(&mut scene, choice, &mut metals)?);
         let camera = self.camera(&scene, document.as_ref())?.unwrap_or(usual);
-        Ok(Staged { scene, camera, size: self.size, notices, document, metals })
+        Ok(Staged { scene, camera, size, notices, document, metals })
     }
 
     /// Applies `--metal`, `--finish`, `--coat`, `--roughness` and `--anisotropy`; returns what the user should know.

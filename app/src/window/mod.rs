@@ -19,6 +19,7 @@ mod preferences;
 mod preparation;
 mod preparations;
 mod reference;
+mod rename;
 mod request;
 mod session;
 mod shortcuts;

@@ -20,6 +20,7 @@ pub fn trials() -> Vec<Trial> {
         trial("a_chart_point_becomes_a_side_is_wiped_copied_and_undone", &[], from_point_to_wipe),
         trial("the_plan_of_a_chart_tells_what_is_wrong_where_it_is_typed", &[], plan),
         trial("a_small_chart_is_measured_and_kept", &[Need::Gpu], measured),
+        trial("marks_of_a_chart_are_shown_as_they_come", &[Need::Gpu], arriving),
         trial("a_measurement_is_ended_and_the_window_does_not_wait", &[Need::Gpu], cancelled),
     ]
 }
@@ -46,6 +47,7 @@ fn record(method: &str, samples: u32, ms: f64, relmse: f64) -> Record {
         errors: [relmse * 0.7, relmse, relmse * 0.4].map(|relmse| Some(errors(relmse))),
         floors: [Some(floor); 3],
         truth_samples: 256,
+        truth_settings: Vec::new(),
     }
 }
 
@@ -170,6 +172,32 @@ fn measured() {
     bench.until("it is read", |workbench| !workbench.chart().is_busy());
     assert_eq!(bench.workbench().chart().records(), first, "times and all: it was kept");
     assert!(bench.session().history().past().is_empty(), "measuring is no edit");
+}
+
+fn arriving() {
+    let mut bench = bench("arriving");
+    small(bench.workbench());
+    bench.workbench().chart_mut().plan.methods[1].on = false;
+    bench.window.run_steps(2);
+    bench.click_role(Role::Button, "Measure");
+    bench.until("it is measured", |workbench| !workbench.chart().is_busy());
+    bench.workbench().chart_mut().set_records(Vec::new());
+
+    // The first is kept, the second takes longer than anyone waits.
+    let slow = &mut bench.workbench().chart_mut().plan.methods[1];
+    (slow.on, slow.sweeps) = (true, vec!["samples=1048576".into()]);
+    bench.window.run_steps(2);
+    bench.click_role(Role::Button, "Measure");
+    bench.until("a record arrives", |workbench| !workbench.chart().records().is_empty());
+    bench.window.run_steps(2);
+    assert!(bench.workbench().chart().is_busy(), "the other is measured still");
+    assert_eq!(bench.workbench().chart().records().len(), 1);
+    bench.window.get_by_label_contains("classical: ");
+    assert!(bench.window.query_by_label_contains("reference: ").is_none());
+    bench.window.get_by_label("Cancel");
+    bench.click_role(Role::Button, "Cancel");
+    bench.until("it has ended", |workbench| !workbench.chart().is_busy());
+    assert_eq!(bench.workbench().chart().records().len(), 1, "what was measured stays");
 }
 
 fn cancelled() {

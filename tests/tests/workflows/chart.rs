@@ -17,10 +17,12 @@ pub fn a_chart_is_the_same_twice_and_kept_in_between() {
         let files = ["--cache", text(&cache), "--out", text(&svg), "--csv", text(&csv), "--html", text(&html)];
         let size = ["--size", "32x18", "--samples", "8", "--env", text(&sky)];
         let args = [&["chart", "gallery:workbench"], &sweeps[..], &files[..], &size[..], more].concat();
-        burnish(&args).succeeded();
-        fs::read_to_string(&csv).expect("a table")
+        let told = burnish(&args).succeeded().err;
+        let opened = told.contains("opening the graphics device");
+        (fs::read_to_string(&csv).expect("a table"), opened)
     };
-    let first = measure("a.csv", &[]);
+    let (first, opened) = measure("a.csv", &[]);
+    assert!(opened);
     let rows: Vec<Vec<&str>> = first.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 4);
     assert!(rows.iter().all(|row| row.len() == rows[0].len()));
@@ -35,15 +37,22 @@ pub fn a_chart_is_the_same_twice_and_kept_in_between() {
     assert!(drawn.starts_with("<svg xmlns") && drawn.contains("samples 2"), "{drawn}");
     assert!(fs::read_to_string(&html).expect("a page").contains("noise of the reference"));
 
-    // Read from the cache, times and all.
-    assert_eq!(measure("b.csv", &[]), first);
+    // Read from the cache, times and all, and no adapter is opened for it.
+    assert_eq!(measure("b.csv", &[]), (first.clone(), false));
     // Measured again: errors are the same bytes.
-    let fresh = measure("c.csv", &["--fresh"]);
+    let (fresh, _) = measure("c.csv", &["--fresh"]);
     let errors = |table: &str| -> Vec<Vec<String>> {
         table.lines().map(|line| line.split(',').skip(column("under_floor")).map(String::from).collect()).collect()
     };
     assert_eq!(errors(&fresh), errors(&first));
     assert_ne!(fresh, first, "times of another run are not the same to the last digit");
+
+    // Another truth is measured anew and told.
+    assert!(rows[1][column("truth_settings")].is_empty());
+    let (direct, opened) = measure("d.csv", &["--truth", "bounces=1", "--truth", "clamp=10"]);
+    assert!(opened && direct.contains(",bounces=1 clamp=10,"), "{direct}");
+    let page = fs::read_to_string(&html).expect("a page");
+    assert!(page.contains("reference of 8 paths a pixel, with bounces=1 clamp=10"), "{page}");
 }
 
 pub fn what_cannot_be_measured_is_told() {
@@ -55,5 +64,9 @@ pub fn what_cannot_be_measured_is_told() {
     refused(&["--sweep", "samples"], &["[METHOD.]key=a,b,c"]);
     refused(&["--sweep", "smples=1"], &["smples", "samples"]);
     refused(&["--methods", "classical", "--sweep", "reference.bounces=1"], &["reference", "--methods"]);
+    refused(&["--truth", "bounces"], &["--truth", "key=value"]);
+    refused(&["--truth", "bounce=1"], &["--truth bounce=1", "there are", "clamp"]);
+    refused(&["--truth", "bounces=-1"], &["--truth bounces=-1", "0 to 1024"]);
+    refused(&["--truth", "samples=4"], &["--truth samples=4", "--samples 4"]);
     refused(&["--subject", "teapot"], &["teapot", "there are"]);
 }

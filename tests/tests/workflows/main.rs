@@ -52,6 +52,12 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
         trial("scenes of the gallery are written as glb", &[], exporting::scenes_of_the_gallery_are_written_as_glb),
+        trial(
+            "a document is written as glb and read again",
+            &[],
+            exporting::a_document_is_written_as_glb_and_read_again,
+        ),
+        trial("what a glb cannot be is refused by name", &[], exporting::what_a_glb_cannot_be_is_refused_by_name),
         trial("a full disk is exit code 4", &[], a_full_disk),
         trial(
             "a chart is the same twice and kept in between",

@@ -130,9 +130,9 @@ pub fn readme_examples_run() {
         for arg in args.iter_mut().filter(|arg| arg.ends_with(".burnish")) {
             *arg = text(&repository().join(&*arg)).into();
         }
-        if args[0] == "export" {
+        if args.iter().take(2).any(|arg| arg == "export") {
             // A folder has no ending to know it by.
-            let out = args.iter().position(|arg| arg == "--out").expect("a folder to write into") + 1;
+            let out = args.iter().position(|arg| arg == "--out").expect("a place to write to") + 1;
             args[out] = text(&folder.join(&args[out])).into();
         }
         if args[0] == "snapshot" {
@@ -174,6 +174,9 @@ pub fn readme_examples_run() {
         "diff.png",
         "forms.csv",
         "forms.html",
+        "copper.glb",
+        "copper.exr",
+        "scenes/bowls.glb",
     ] {
         assert!(folder.join(picture).is_file(), "{picture}");
     }

@@ -76,11 +76,12 @@ pub fn page(records: &[Record], methods: &[&dyn Method], command: &str) -> Strin
 fn section(scene: &[&Record]) -> String {
     let first = scene[0];
     let mut html = format!(
-        "<h2>{}</h2>\n<p>{} x {} pixels; reference of {} paths a pixel.</p>\n",
+        "<h2>{}</h2>\n<p>{} x {} pixels; reference of {} paths a pixel{}.</p>\n",
         escape(&first.scene),
         first.width,
         first.height,
-        first.truth_samples
+        first.truth_samples,
+        escape(&first.truth_text())
     );
     let varied = varied(scene);
     let titles =
@@ -167,6 +168,7 @@ pub mod tests {
             errors: [Some(errors), Some(errors), None],
             floors: [Some(floor), Some(floor), None],
             truth_samples: 512,
+            truth_settings: vec![("clamp".into(), "10".into())],
         }
     }
 
@@ -189,6 +191,7 @@ pub mod tests {
         let html = page(&records, METHODS, "burnish chart <x>");
         assert_eq!(html.matches("<h2>").count(), 3);
         assert!(html.contains("classical, samples 64") && html.contains("a &lt;b&gt;") && !html.contains("<b>\""));
+        assert!(html.contains("reference of 512 paths a pixel, with clamp=10."));
         assert!(html.contains("\u{2248}") && html.contains("burnish chart &lt;x&gt;"));
         assert_eq!(html.matches("Errors on the subject without").count(), 0);
         assert!(html.contains("Unidirectional path tracing"));

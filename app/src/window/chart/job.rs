@@ -1,12 +1,13 @@
 //! The measurement, on a thread and a device of its own: the window's picture goes on, and nothing that fails here is
 //! noticed there.
 
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use burnish_core::job::{Handle, Job};
-use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, Record, Shot};
-use burnish_core::reference::Control;
-use burnish_render::Gpu;
+use burnish_core::measure::bench::{self, BenchError, Cache, Candidate, News, Record, Shot};
+use burnish_core::param::Settings;
+use burnish_core::reference::{self, Control};
 use eframe::egui;
 
 use crate::rig;
@@ -25,6 +26,9 @@ pub struct Order {
 
 /// Records of all candidates, or why there are none.
 pub type Measured = Result<Vec<Record>, BenchError>;
+
+/// Each record with the place of its candidate, as soon as it is there.
+pub type Arrivals = Receiver<(usize, Record)>;
 
 /// What is going on, for people.
 #[derive(Clone, Default)]
@@ -45,42 +49,63 @@ impl Words {
     }
 }
 
-/// Starts the thread; `ctx` is repainted whenever there is something new to tell.
-pub fn start(order: Order, ctx: &egui::Context) -> (Job<Measured>, Words) {
-    let words = Words::default();
-    let (told, waker, ctx) = (words.clone(), ctx.clone(), ctx.clone());
-    let tell = move |text: String| {
-        if told.set(text) {
-            ctx.request_repaint();
-        }
-    };
-    let work = move |handle: &Handle| measure(&order, handle, &tell);
-    (Job::spawn("Measuring", move || waker.request_repaint(), work), words)
+/// The ends of the wires to the window that the thread holds.
+struct Desk {
+    words: Words,
+    records: Sender<(usize, Record)>,
+    ctx: egui::Context,
 }
 
-fn measure(order: &Order, handle: &Handle, tell: &dyn Fn(String)) -> Measured {
+impl Desk {
+    fn tell(&self, words: String) {
+        if self.words.set(words) {
+            self.ctx.request_repaint();
+        }
+    }
+
+    fn hand_over(&self, place: usize, record: &Record) {
+        // Nobody listens after the window went away.
+        let _ = self.records.send((place, record.clone()));
+        self.ctx.request_repaint();
+    }
+}
+
+/// Starts the thread; `ctx` is repainted whenever there is something new to tell or to show.
+pub fn start(order: Order, ctx: &egui::Context) -> (Job<Measured>, Words, Arrivals) {
+    let words = Words::default();
+    let (records, arrivals) = channel();
+    let desk = Desk { words: words.clone(), records, ctx: ctx.clone() };
+    let waker = ctx.clone();
+    let work = move |handle: &Handle| measure(&order, handle, &desk);
+    (Job::spawn("Measuring", move || waker.request_repaint(), work), words, arrivals)
+}
+
+fn measure(order: &Order, handle: &Handle, desk: &Desk) -> Measured {
     let Order { shot, candidates, samples, cache } = order;
     let control = Control::of_job(handle);
-    tell("opening the graphics device".into());
-    let gpu = Gpu::new().map_err(words)?;
-    let mut rig = rig::rig(&gpu, &control)?;
+    desk.tell("looking for a graphics device".into());
+    let mut rig = rig::rig(&control)?;
     let truth = {
         // One core is left for the window. Timing has all: the command line measures so, and its results are shared.
         let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
         let pool =
             rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build().map_err(words)?;
+        let settings = Settings::new(reference::PARAMS);
         let mut halves = Halves::default();
-        rig::truth(shot, *samples, (cache, &control), Some(&pool), || {
+        rig::truth(shot, &settings, *samples, (cache, &control), Some(&pool), || {
             let done = halves.done(control.progress());
-            tell(format!("tracing the reference, {samples} paths a pixel: {:.0} %", 100.0 * done));
+            desk.tell(format!("tracing the reference, {samples} paths a pixel: {:.0} %", 100.0 * done));
         })?
     };
     let name = format!("{}: ", shot.name);
-    bench::measure(shot, &truth, candidates, &mut rig, cache, &mut |text| {
+    bench::measure(shot, &truth, candidates, &mut rig, cache, &mut |news| {
         if handle.is_cancelled() {
             return Err(BenchError::Cancelled);
         }
-        tell(text.strip_prefix(&name).unwrap_or(text).into());
+        match news {
+            News::Next(text) => desk.tell(text.strip_prefix(&name).unwrap_or(text).into()),
+            News::Done(place, record) => desk.hand_over(place, record),
+        }
         Ok(())
     })
 }

@@ -5,6 +5,7 @@
 mod job;
 mod plan;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ use burnish_core::scene::{Camera, Scene, gallery};
 use eframe::egui;
 
 use super::session::Session;
-use job::{Measured, Order, Words};
+use job::{Arrivals, Measured, Order, Words};
 
 pub use plan::{Chosen, Plan};
 
@@ -83,6 +84,9 @@ struct Measurement {
 struct Running {
     job: Job<Measured>,
     words: Words,
+    arrivals: Arrivals,
+    /// What has arrived, by the places of the candidates.
+    records: BTreeMap<usize, Record>,
     of: (Arc<Scene>, Camera),
     ends: bool,
 }
@@ -170,8 +174,8 @@ impl Chart {
         let cache = self.folder.as_deref().map_or_else(Cache::none, Cache::within);
         let cache = if self.plan.fresh { cache.fresh() } else { cache };
         self.fault = None;
-        let (job, words) = job::start(Order { shot, candidates, samples: self.plan.samples, cache }, ctx);
-        self.running = Some(Running { job, words, of, ends: false });
+        let (job, words, arrivals) = job::start(Order { shot, candidates, samples: self.plan.samples, cache }, ctx);
+        self.running = Some(Running { job, words, arrivals, records: BTreeMap::new(), of, ends: false });
     }
 
     /// Ends the measurement: at once for the window, for its thread between two frames.
@@ -184,6 +188,7 @@ impl Chart {
 
     /// Takes over what the thread has done; once a frame.
     pub fn frame(&mut self) {
+        self.take_arrivals();
         let Some(running) = &mut self.running else { return };
         let done = match running.job.poll() {
             Outcome::Running => return,
@@ -193,8 +198,21 @@ impl Chart {
         let Some(Running { of, ends, .. }) = self.running.take() else { return };
         match done {
             _ if ends => {}
+            // Most often all have arrived before.
+            Ok(records) if *self.records() == records => {}
             Ok(records) => self.shown = Some(Measurement { records: Arc::new(records), of: Some(of) }),
             Err(error) => self.fault = Some(error.to_string()),
+        }
+    }
+
+    /// Shows what is measured so far, unless it was told to end; the first record takes the place of what was shown.
+    fn take_arrivals(&mut self) {
+        let Some(running) = self.running.as_mut().filter(|running| !running.ends) else { return };
+        let before = running.records.len();
+        running.records.extend(running.arrivals.try_iter());
+        if running.records.len() > before {
+            let records = Arc::new(running.records.values().cloned().collect());
+            self.shown = Some(Measurement { records, of: Some(running.of.clone()) });
         }
     }
 

@@ -4,10 +4,12 @@
 
 mod dialog;
 mod drop;
+mod finished;
 mod folders;
 mod image;
 mod load;
 mod notices;
+mod questions;
 mod recovery;
 mod save;
 mod store;
@@ -15,9 +17,9 @@ mod store;
 mod tests;
 mod watch;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use burnish_core::job::{Job, Outcome};
+use burnish_core::job::Job;
 use burnish_core::lighting;
 use eframe::egui;
 
@@ -29,12 +31,12 @@ use super::request::{Purpose, Request, Requests};
 use super::session::Session;
 use super::stage::Stage;
 use super::workbench::Options;
-use dialog::{Answer, Ask, Dialog};
+use dialog::{Ask, Dialog};
 use drop::Pending;
 use image::ImageSettings;
-use load::{Landing, Loads, Notices};
+use load::{Loads, Notices};
 use recovery::{Found, Recovery, Scan, Snapshot};
-use save::{Choice, Next, Saving, Wish};
+use save::{Next, Saving, Wish};
 use store::Store;
 use watch::Watch;
 
@@ -308,86 +310,6 @@ impl Files {
         self.leave(Next::Quit, session, ctx);
     }
 
-    /// Takes over what other threads finished.
-    fn advance(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        // Before another document may take the place of the one that is saved.
-        self.advance_save(context, ctx);
-        if self.saving.is_none() || !self.loads.is_exclusive() {
-            self.advance_loads(context, ctx);
-        }
-        self.advance_picture();
-        if let Some(job) = &mut self.scanning
-            && let Outcome::Done(scan) = job.poll()
-        {
-            self.scanning = None;
-            self.scanned(scan);
-        }
-        self.watch.wake(ctx);
-    }
-
-    fn advance_loads(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        let Files { loads, watch, outbox, notices, recovery, opened, .. } = self;
-        let (session, preferences) = (&mut *context.session, &mut *context.preferences);
-        loads.advance(&mut Landing { session, preferences, watch, outbox, recovery, opened, notices }, ctx);
-    }
-
-    fn advance_save(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        let Some(result) = self.saving.as_mut().and_then(|saving| saving.advance(context.session)) else { return };
-        self.saving = None;
-        let after = match result {
-            Ok((path, next)) => {
-                self.outbox.push(Request::Notice(format!("Saved {}", path.display())));
-                context.preferences.remember(&load::known_path(&path));
-                self.kept_revision = None;
-                next
-            }
-            Err(reason) => {
-                self.outbox.push(Request::Error(reason));
-                None
-            }
-        };
-        let held = self.held.take();
-        if let Some(Wish { path, next }) = self.wish.take() {
-            let next = held.or(next).or(after);
-            self.save(context.session, Wish { path, next }, ctx);
-        } else if let Some(next) = held.or(after) {
-            self.leave(next, context.session, ctx);
-        }
-    }
-
-    fn advance_picture(&mut self) {
-        let Some(job) = &mut self.picture else { return };
-        let failed = format!("{} ended unexpectedly; try a smaller picture", job.label);
-        let request = match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(words)) => Request::Notice(words),
-            Outcome::Done(Err(reason)) => Request::Error(reason),
-            Outcome::Failed => Request::Error(failed),
-        };
-        self.picture = None;
-        self.outbox.push(request);
-    }
-
-    fn scanned(&mut self, scan: Scan) {
-        for aside in scan.damaged {
-            let aside = aside.display();
-            self.outbox.push(Request::Error(format!("a damaged recovery file was set aside as {aside}")));
-        }
-        for fault in scan.unreadable {
-            self.outbox.push(Request::Error(format!("a recovery file was left as it is: {fault}")));
-        }
-        self.offered = scan.found;
-        if std::mem::take(&mut self.recovers) && !self.offered.is_empty() {
-            let newest = self.offered.remove(0);
-            self.offered.clear();
-            self.recover(newest);
-        }
-    }
-
-    fn recover(&mut self, found: Found) {
-        self.loads.push(load::recovered(found));
-    }
-
     /// Keeps on disk what must last: the user's choices and unsaved edits.
     fn keep(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
         let session = &*context.session;
@@ -410,96 +332,9 @@ impl Files {
         }
     }
 
-    fn dialogs_ui(&mut self, context: &mut Context<'_>, ctx: &egui::Context) {
-        if let Some(next) = self.guard.clone()
-            && let Some(choice) = save::guard_ui(ctx, &context.session.title(), &next)
-        {
-            self.guard = None;
-            match choice {
-                Choice::Save => self.save(context.session, Wish { path: None, next: Some(next) }, ctx),
-                Choice::Discard => self.go_on(next, ctx),
-                Choice::Cancel => {}
-            }
-        }
-        if let Some(dialog) = &mut self.dialog {
-            match dialog.ui(ctx, context.preferences) {
-                Answer::None => {}
-                Answer::Cancelled => self.dialog = None,
-                Answer::Path(ask, path) => {
-                    self.dialog = None;
-                    self.answered(ask, path, context, ctx);
-                }
-            }
-        }
-        if let Some(pending) = self.dropped.first()
-            && let Some(answer) = drop::slot_ui(ctx, pending, context.session)
-        {
-            self.outbox.extend(answer);
-            self.dropped.remove(0);
-        }
-        // Not above another question.
-        if self.guard.is_none() && self.dialog.is_none() && !self.loads.is_exclusive() {
-            match self.offered.first().and_then(|found| notices::offer_ui(ctx, found)) {
-                Some(notices::Offer::Recover) => {
-                    let found = self.offered.remove(0);
-                    self.offered.clear();
-                    self.recover(found);
-                }
-                Some(notices::Offer::Discard) => self.offered.remove(0).discard(),
-                Some(notices::Offer::Later) => self.offered.clear(),
-                None => {}
-            }
-        }
-    }
-
-    fn answered(&mut self, ask: Ask, path: PathBuf, context: &mut Context<'_>, ctx: &egui::Context) {
-        match ask {
-            Ask::Scene => self.outbox.push(Request::OpenScene(path.to_string_lossy().into_owned())),
-            Ask::Environment => self.outbox.push(Request::LoadEnvironment(path)),
-            Ask::Texture { material, role } => self.outbox.push(Request::LoadTexture { material, role, path }),
-            Ask::Preset => self.outbox.push(Request::ImportPreset(path)),
-            Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
-            Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
-            Ask::SaveImage(settings) => {
-                let Context { session, stage, reference, .. } = context;
-                match image::start(
-                    session,
-                    (stage.passes(), reference.shown(), self.prepared_store()),
-                    settings,
-                    path,
-                    ctx,
-                ) {
-                    Ok(job) => self.picture = Some(job),
-                    Err(reason) => self.outbox.push(Request::Error(reason)),
-                }
-            }
-        }
-        ctx.request_repaint();
-    }
-
     /// Where preparations are kept.
     pub fn prepared_store(&self) -> lighting::Store {
         self.folders().map_or_else(lighting::Store::none, |folders| lighting::Store::within(&folders.prepared()))
-    }
-
-    /// Shows what is being done, with the means to end it.
-    fn work_ui(&mut self, ctx: &egui::Context) {
-        if let Some(label) = self.loads.exclusive_label().map(str::to_string)
-            && notices::loading_ui(ctx, &label)
-        {
-            self.loads.cancel_exclusive();
-        }
-        let reading = self.loads.label().filter(|_| !self.loads.is_exclusive()).map(|label| (label.to_string(), None));
-        let drawing = self.picture.as_ref().map(|job| (job.label.clone(), Some(job.progress())));
-        let works: Vec<_> = drawing.into_iter().chain(reading).collect();
-        match notices::work_ui(ctx, &works) {
-            Some(label) if self.loads.label() == Some(label.as_str()) => self.loads.cancel(),
-            Some(label) => {
-                self.picture = None;
-                self.outbox.push(Request::Notice(format!("{label}: cancelled")));
-            }
-            None => {}
-        }
     }
 }
 

@@ -28,9 +28,7 @@ impl Writer<'_> {
             "metallicFactor": metallic,
             "roughnessFactor": m.roughness,
         });
-        // A preset reflects by its curve alone; its base colour would only tint it elsewhere.
-        let is_preset = matches!(m.reflectance, Reflectance::Preset { .. });
-        let base = m.base_color_texture.filter(|_| !is_preset || m.alpha_mode != AlphaMode::Opaque);
+        let base = m.base_color_texture.filter(|_| !is_opaque_metal(m));
         self.texture(&mut pbr, "baseColorTexture", base, &element);
         self.texture(&mut pbr, "metallicRoughnessTexture", m.metallic_roughness_texture, &element);
         let mut json = json!({ "name": m.name, "pbrMetallicRoughness": pbr });
@@ -158,6 +156,11 @@ impl Writer<'_> {
         }
         Ok(list)
     }
+}
+
+/// A preset reflects by its curve alone; its base colour would only tint it elsewhere, and has no alpha to tell.
+pub(super) fn is_opaque_metal(m: &Material) -> bool {
+    matches!(m.reflectance, Reflectance::Preset { .. }) && m.alpha_mode == AlphaMode::Opaque
 }
 
 /// The place of a value in a list, which it is added to where it is new.

@@ -17,6 +17,7 @@ use super::{Loss, Report};
 use crate::file::FileError;
 use crate::scene::{Camera, Light, LightKind, Projection, Scene};
 use buffer::Buffer;
+use material::is_opaque_metal;
 
 /// A file with what it cannot hold.
 #[derive(Clone, Debug)]
@@ -56,8 +57,12 @@ pub fn encode(scene: &Scene) -> Result<Encoded, FileError> {
     writer.instances();
     let lights = writer.lights();
     let cameras = writer.cameras();
-    if scene.environment.is_some() {
-        writer.report.note("environment", Loss::Dropped, "glTF has no environments; use the map beside the file");
+    if let Some(map) = &scene.environment {
+        let degrees = map.rotation.to_degrees();
+        let turned = format!(", turned by {degrees} degrees counter-clockwise about +y");
+        let turned = if degrees == 0.0 { "" } else { &turned };
+        let what = format!("glTF has no environments; use the map beside the file{turned}");
+        writer.report.note("environment", Loss::Dropped, what);
     }
     writer.finish(materials, images, lights, cameras)
 }
@@ -76,7 +81,14 @@ impl Writer<'_> {
             }
             let mesh = &scene.meshes[instance.mesh];
             let buffer = &mut self.buffer;
-            let (attributes, indices) = attributes.entry(instance.mesh).or_insert_with(|| buffer.mesh(mesh)).clone();
+            let (mut attributes, indices) =
+                attributes.entry(instance.mesh).or_insert_with(|| buffer.mesh(mesh)).clone();
+            // A curve knows nothing of the colours of vertices; the colour that stands for it would be tinted.
+            if is_opaque_metal(&scene.materials[instance.material])
+                && let Some(attributes) = attributes.as_object_mut()
+            {
+                attributes.remove("COLOR_0");
+            }
             let list = &mut self.meshes;
             let index = *meshes.entry((instance.mesh, instance.material)).or_insert_with(|| {
                 let primitive = json!({ "attributes": attributes, "indices": indices, "material": instance.material });

@@ -36,7 +36,7 @@ pub use pareto::pareto;
 pub use points::PointTimer;
 pub use record::{COLUMNS, Record, Region, csv};
 pub use reference::PathTimer;
-pub use run::{Candidate, Progress, measure};
+pub use run::{Candidate, Listener, News, measure};
 pub use truth::Truth;
 
 /// Jittered frames whose mean is compared: with it both sides average over the area of a pixel.
@@ -106,13 +106,43 @@ pub trait FrameTimer {
 }
 
 /// Who draws, and a pass that tells how fast the machine is just now.
-pub struct Rig<'a> {
+pub struct Tools<'a> {
     /// A timer for each method that can be measured.
     pub timers: Vec<(MethodId, Box<dyn FrameTimer + 'a>)>,
     /// Seconds of a fixed piece of the same kind of work.
     pub calibrate: Box<dyn FnMut() -> Result<f64, BenchError> + 'a>,
+}
+
+/// Makes [`Tools`].
+type Open<'a> = Box<dyn FnMut() -> Result<Tools<'a>, BenchError> + 'a>;
+
+/// The tools of a machine, which are not made before something must be drawn: what the cache holds needs none.
+pub struct Rig<'a> {
     /// What the times depend on besides: the name of the device.
-    pub machine: String,
+    machine: String,
+    open: Open<'a>,
+    tools: Option<Tools<'a>>,
+}
+
+impl<'a> Rig<'a> {
+    /// Of the machine of this name; `open` is called once the tools are needed.
+    pub fn new(machine: impl Into<String>, open: impl FnMut() -> Result<Tools<'a>, BenchError> + 'a) -> Rig<'a> {
+        Rig { machine: machine.into(), open: Box::new(open), tools: None }
+    }
+
+    /// Whether the tools were made.
+    pub fn is_open(&self) -> bool {
+        self.tools.is_some()
+    }
+
+    /// The tools, made where they are not there yet.
+    fn tools(&mut self) -> Result<&mut Tools<'a>, BenchError> {
+        let tools = match self.tools.take() {
+            Some(tools) => tools,
+            None => (self.open)()?,
+        };
+        Ok(self.tools.insert(tools))
+    }
 }
 
 /// Why something could not be measured.

@@ -58,6 +58,9 @@ pub struct Record {
     pub floors: [Option<Errors>; 3],
     /// Paths a pixel of the truth.
     pub truth_samples: u32,
+    /// Settings of the truth that are not default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub truth_settings: Vec<(String, String)>,
 }
 
 /// Measures of [`Errors`] with their names in tables.
@@ -72,7 +75,7 @@ const MEASURES: [Measure; 6] = [
 ];
 
 /// Columns of [`csv`] before those of errors.
-pub const COLUMNS: [&str; 12] = [
+pub const COLUMNS: [&str; 13] = [
     "scene",
     "method",
     "settings",
@@ -84,6 +87,7 @@ pub const COLUMNS: [&str; 12] = [
     "frame_ratio",
     "frames",
     "truth_samples",
+    "truth_settings",
     "under_floor",
 ];
 
@@ -110,8 +114,17 @@ impl Record {
 
     /// All settings as `key=value` with spaces between.
     pub fn settings_text(&self) -> String {
-        self.settings.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
+        words(&self.settings)
     }
+
+    /// `, with key=value` for what is not default of the settings of the truth; empty where all is.
+    pub fn truth_text(&self) -> String {
+        if self.truth_settings.is_empty() { String::new() } else { format!(", with {}", words(&self.truth_settings)) }
+    }
+}
+
+fn words(settings: &[(String, String)]) -> String {
+    settings.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
 }
 
 /// A table of comma-separated values with a line of column names: [`COLUMNS`], then `region_measure` and
@@ -139,6 +152,7 @@ pub fn csv(records: &[Record]) -> String {
             number(record.ratio()),
             record.frames.to_string(),
             record.truth_samples.to_string(),
+            quoted(&words(&record.truth_settings)),
             if record.is_under_floor() { "yes" } else { "no" }.to_string(),
         ];
         for region in Region::ALL {

@@ -1,6 +1,6 @@
 //! Measuring: candidates in turns, so that a busy machine slows all alike.
 
-use super::{BenchError, Cache, FrameTimer, Frames, Record, Region, Rig, Shot, Truth};
+use super::{BenchError, Cache, FrameTimer, Frames, Record, Region, Rig, Shot, Tools, Truth};
 use crate::lighting::method::MethodId;
 use crate::measure::errors;
 use crate::param::Settings;
@@ -19,8 +19,17 @@ pub struct Candidate {
     pub settings: Settings,
 }
 
-/// What is going on, for people; the same words may come many times.
-pub type Progress<'a> = &'a mut dyn FnMut(&str) -> Result<(), BenchError>;
+/// What is heard of a measurement.
+#[derive(Clone, Copy, Debug)]
+pub enum News<'a> {
+    /// What comes next, for people; the same words may come many times.
+    Next(&'a str),
+    /// The candidate at this place has a record.
+    Done(usize, &'a Record),
+}
+
+/// Hears the news, and ends the measurement by an error.
+pub type Listener<'a> = &'a mut dyn FnMut(News<'_>) -> Result<(), BenchError>;
 
 /// A candidate on its way.
 struct Entry {
@@ -38,8 +47,8 @@ impl Entry {
     }
 }
 
-/// Records of the candidates in their order. Those that the cache holds are not measured again; each new one is kept as
-/// soon as all are timed. `progress` hears what comes next and may end it by an error.
+/// Records of the candidates in their order. Those that the cache holds are told at once and not measured again, and the
+/// rig stays closed where it holds all; each new one is kept and told as soon as all are timed and it is compared.
 ///
 /// Times are medians over frames that the candidates draw in turns, each after a pass of the rig's calibration; one frame
 /// before them warms up and does not count.
@@ -49,29 +58,39 @@ pub fn measure(
     candidates: &[Candidate],
     rig: &mut Rig<'_>,
     cache: &Cache,
-    progress: Progress<'_>,
+    tell: Listener<'_>,
 ) -> Result<Vec<Record>, BenchError> {
     let keys: Vec<String> =
         candidates.iter().map(|c| cache.key(shot, truth, c, &rig.machine)).collect::<Result<_, _>>()?;
     let mut records: Vec<Option<Record>> = keys.iter().map(|key| cache.record(key)).collect();
+    for (index, record) in records.iter().enumerate() {
+        record.as_ref().map_or(Ok(()), |record| tell(News::Done(index, record)))?;
+    }
+    if records.iter().all(Option::is_some) {
+        return Ok(records.into_iter().flatten().collect());
+    }
+    if !rig.is_open() {
+        tell(News::Next(&format!("{}: opening the graphics device", shot.name)))?;
+    }
+    let Tools { timers, calibrate } = rig.tools()?;
     let mut entries = Vec::new();
     for (index, candidate) in candidates.iter().enumerate().filter(|(index, _)| records[*index].is_none()) {
-        progress(&format!("{}: preparing {}", shot.name, candidate.label()))?;
-        let timer = rig.timers.iter_mut().find(|(id, _)| *id == candidate.method);
+        tell(News::Next(&format!("{}: preparing {}", shot.name, candidate.label())))?;
+        let timer = timers.iter_mut().find(|(id, _)| *id == candidate.method);
         let (_, timer) = timer.ok_or(BenchError::NoTimer(candidate.method))?;
         entries.push(open(timer.as_mut(), index, shot, &candidate.settings)?);
     }
     let timing = format!("{}: timing {} candidates in turns", shot.name, entries.len());
     while !entries.iter().all(Entry::is_done) {
         for entry in entries.iter_mut().filter(|entry| !entry.is_done()) {
-            progress(&timing)?;
-            entry.calibration.push((rig.calibrate)()?);
+            tell(News::Next(&timing))?;
+            entry.calibration.push(calibrate()?);
             entry.secs.push(entry.frames.frame()?);
         }
     }
     for mut entry in entries {
         let candidate = &candidates[entry.index];
-        progress(&format!("{}: comparing {}", shot.name, candidate.label()))?;
+        tell(News::Next(&format!("{}: comparing {}", shot.name, candidate.label())))?;
         let picture = entry.frames.picture()?;
         let masks = truth.masks.each_ref().map(Vec::as_slice);
         let found = errors(&truth.picture, &picture, shot.exposure_ev, &masks)?;
@@ -92,8 +111,10 @@ pub fn measure(
             errors: by_region,
             floors: truth.floors,
             truth_samples: truth.samples,
+            truth_settings: truth.settings.clone(),
         };
         cache.keep(&keys[entry.index], &record)?;
+        tell(News::Done(entry.index, &record))?;
         records[entry.index] = Some(record);
     }
     Ok(records.into_iter().flatten().collect())
@@ -120,10 +141,13 @@ impl Candidate {
 
     /// For people: the method and what is not default.
     pub fn label(&self) -> String {
-        let changed = self.settings.iter().filter(|(spec, value)| spec.default() != *value);
-        let changed: Vec<String> = changed
-            .map(|(spec, _)| format!("{}={}", spec.key, self.settings.text(spec.key).unwrap_or_default()))
-            .collect();
-        [vec![self.method.to_string()], changed].concat().join(" ")
+        let changed = changed(&self.settings).into_iter().map(|(key, value)| format!("{key}={value}"));
+        [vec![self.method.to_string()], changed.collect()].concat().join(" ")
     }
+}
+
+/// The settings that are not default, as text.
+pub(super) fn changed(settings: &Settings) -> Vec<(String, String)> {
+    let changed = settings.iter().filter(|(spec, value)| spec.default() != *value);
+    changed.map(|(spec, _)| (spec.key.to_string(), settings.text(spec.key).unwrap_or_default())).collect()
 }

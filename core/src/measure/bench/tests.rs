@@ -52,6 +52,8 @@ struct WrongTimer {
 
 struct WrongFrames(Picture);
 
+type Timers = Vec<(MethodId, Box<dyn FrameTimer>)>;
+
 impl FrameTimer for WrongTimer {
     fn open(&mut self, _: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
         self.opened.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
@@ -104,14 +106,25 @@ fn records(cache: &Cache, sweeps: &[&str]) -> (Vec<Record>, usize) {
         .flat_map(|m| method::combinations(*m, &sweeps).unwrap().into_iter().map(|s| (m.info().id, s)))
         .map(|(method, settings)| Candidate { method, settings })
         .collect();
-    let wrong = WrongTimer { truth: truth.picture.clone(), opened: opened.clone() };
-    let mut rig = Rig {
-        timers: vec![(MethodId(reference::ID), Box::new(PathTimer::default())), (MethodId("wrong"), Box::new(wrong))],
-        calibrate: Box::new(|| Ok(0.125)),
-        machine: "test".into(),
+    let (picture, count) = (truth.picture.clone(), opened.clone());
+    let mut rig = Rig::new("test", move || {
+        let wrong = WrongTimer { truth: picture.clone(), opened: count.clone() };
+        let paths = Box::new(PathTimer::default());
+        let timers: Timers = vec![(MethodId(reference::ID), paths), (MethodId("wrong"), Box::new(wrong))];
+        Ok(Tools { timers, calibrate: Box::new(|| Ok(0.125)) })
+    });
+    let mut told = vec![None; candidates.len()];
+    let mut hear = |news: News<'_>| {
+        if let News::Done(place, record) = news {
+            assert!(told[place].replace(record.clone()).is_none(), "each is told once");
+        }
+        Ok(())
     };
-    let records = measure(&shot, &truth, &candidates, &mut rig, cache, &mut |_| Ok(())).unwrap();
-    (records, opened.load(std::sync::atomic::Ordering::Relaxed))
+    let records = measure(&shot, &truth, &candidates, &mut rig, cache, &mut hear).unwrap();
+    assert_eq!(told.into_iter().flatten().collect::<Vec<_>>(), records);
+    let opened = opened.load(std::sync::atomic::Ordering::Relaxed);
+    assert_eq!(rig.is_open(), opened > 0, "tools are made where something must be drawn, and only there");
+    (records, opened)
 }
 
 #[test]
@@ -150,6 +163,21 @@ fn errors_are_bit_identical_from_run_to_run_and_kept_records_are_not_measured_ag
 }
 
 #[test]
+fn settings_of_the_truth_are_told_and_part_of_what_is_kept() {
+    let folder = Folder::new();
+    let (cache, shot) = (Cache::within(&folder.join("cache")), shot());
+    let with = |bounces: &str| {
+        let mut settings = Settings::new(PARAMS);
+        settings.set("bounces", bounces).unwrap();
+        Truth::trace(&shot, &settings, 2, &cache, &Control::default()).unwrap()
+    };
+    let [usual, direct, again] = [with("64"), with("1"), with("1")];
+    assert_eq!((usual.settings.len(), direct.settings.as_slice()), (0, &[("bounces".into(), "1".into())][..]));
+    assert!(usual.key != direct.key && direct.key == again.key);
+    assert!(usual.picture.texels != direct.picture.texels && direct.picture.texels == again.picture.texels);
+}
+
+#[test]
 fn the_regions_are_parts_of_each_other() {
     let truth = truth(&shot(), &Cache::none());
     let [frame, subject, interior] = &truth.masks;
@@ -179,7 +207,7 @@ fn a_method_that_nothing_draws_is_told() {
     let shot = shot();
     let truth = truth(&shot, &Cache::none());
     let candidate = Candidate { method: MethodId("wrong"), settings: Settings::new(INFO.params) };
-    let mut rig = Rig { timers: Vec::new(), calibrate: Box::new(|| Ok(1.0)), machine: String::new() };
+    let mut rig = Rig::new("", || Ok(Tools { timers: Vec::new(), calibrate: Box::new(|| Ok(1.0)) }));
     let error = measure(&shot, &truth, &[candidate], &mut rig, &Cache::none(), &mut |_| Ok(())).unwrap_err();
     assert!(error.to_string().contains("wrong"), "{error}");
 }

@@ -1,6 +1,7 @@
 //! The picture that all are judged by, and how far it can be trusted.
 
 use super::cache::film_hash;
+use super::run::changed;
 use super::{BenchError, Cache, Region, Shot};
 use crate::material::preset::FormChoice;
 use crate::measure::{Errors, errors, interior};
@@ -21,6 +22,8 @@ pub struct Truth {
     pub floors: [Option<Errors>; Region::ALL.len()],
     /// Paths through a pixel.
     pub samples: u32,
+    /// Settings of the reference that are not default, as text.
+    pub settings: Vec<(String, String)>,
     /// Hash of what it was made from.
     pub(super) key: String,
 }
@@ -49,7 +52,7 @@ impl Truth {
         });
         let key = film_hash(&key, half);
         let [a, b] = films;
-        Truth::of_halves(shot, key, &a?, &b?)
+        Ok(Truth { settings: changed(settings), ..Truth::of_halves(shot, key, &a?, &b?)? })
     }
 
     fn of_halves(shot: &Shot, key: String, a: &Film, b: &Film) -> Result<Truth, BenchError> {
@@ -64,7 +67,7 @@ impl Truth {
         for (floor, between) in floors.iter_mut().zip(between) {
             *floor = between.map(Errors::floor_of_halves);
         }
-        Ok(Truth { picture, masks, floors, samples: a.samples() + b.samples(), key })
+        Ok(Truth { picture, masks, floors, samples: a.samples() + b.samples(), settings: Vec::new(), key })
     }
 }
 

@@ -45,10 +45,7 @@ impl ChartPanel {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         let records = context.chart.records();
-        let arrived = !Arc::ptr_eq(&records, &self.shown) && !records.is_empty();
-        if arrived {
-            *self = ChartPanel { shown: records.clone(), ..ChartPanel::default() };
-        }
+        let arrived = !Arc::ptr_eq(&records, &self.shown) && !records.is_empty() && self.take(&records);
         // The chart needs the room, once there is one.
         let header = egui::CollapsingHeader::new("What is measured").default_open(true).open(arrived.then_some(false));
         header.show_unindented(ui, |ui| plan::ui(ui, context));
@@ -66,6 +63,19 @@ impl ChartPanel {
             ui.colored_label(ui.visuals().warn_fg_color, words).on_hover_text("Measure again to see what changed.");
         }
         self.chart_ui(ui, context, &records);
+    }
+
+    /// Takes over records and returns true where they are all others: more of a measurement come to those that are there,
+    /// and what was picked of them stays picked.
+    fn take(&mut self, records: &Arc<Vec<Record>>) -> bool {
+        let place = |old: Option<usize>| {
+            let old = self.shown.get(old?)?;
+            records.iter().position(|record| record == old)
+        };
+        let (picked, stored) = (place(self.picked), self.stored.map(place));
+        let are_others = !self.shown.iter().any(|record| records.contains(record));
+        *self = ChartPanel { picked, stored, shown: records.clone(), diagram: None };
+        are_others
     }
 
     fn chart_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>, records: &[Record]) {
@@ -176,14 +186,15 @@ fn pick_ui(ui: &mut egui::Ui, picked: Option<&Mark>) -> Option<Side> {
 fn details(record: &Record) -> String {
     let memory = record.bytes.map_or_else(|| "unknown".into(), |bytes| format!("{} MB", short(bytes as f64 / 1e6)));
     let mut text = format!(
-        "{} ms a frame, {} x calibration, {} frames\nprepared in {} s, memory {memory}\n{} x {} pixels, reference of {} paths",
+        "{} ms a frame, {} x calibration, {} frames\nprepared in {} s, memory {memory}\n{} x {} pixels, reference of {} paths{}",
         short(1e3 * record.frame_secs),
         short(record.ratio()),
         record.frames,
         short(record.prepare_secs),
         record.width,
         record.height,
-        record.truth_samples
+        record.truth_samples,
+        record.truth_text()
     );
     for (region, name) in REGIONS {
         let Some((errors, _)) = record.of(region) else { continue };

@@ -5,22 +5,15 @@ use eframe::egui;
 
 use super::Context;
 use crate::window::commands::Command;
+use crate::window::rename::{Renaming, Typed, rename_ui};
 use crate::window::request::Request;
 use crate::window::session::Session;
-use crate::window::widget::name_input;
 
 /// The list.
 #[derive(Default)]
 pub struct SnapshotList {
-    renamed: Option<Renaming>,
-}
-
-/// A snapshot whose name is being typed.
-struct Renaming {
-    old: String,
-    name: String,
-    /// The field was not shown yet: it gets the keyboard once.
-    fresh: bool,
+    /// The one that is being renamed, by its name.
+    renamed: Option<Renaming<String>>,
 }
 
 /// What was clicked.
@@ -52,17 +45,13 @@ impl SnapshotList {
     }
 
     fn row_ui(&mut self, ui: &mut egui::Ui, document: &Document, name: &str, action: &mut Option<Action>) {
-        if let Some(renaming) = self.renamed.as_mut().filter(|renaming| renaming.old == name) {
-            let field = ui.add(egui::TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
-            name_input(&field, "Name of the snapshot", &renaming.name);
-            if std::mem::take(&mut renaming.fresh) {
-                field.request_focus();
-            } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-                self.renamed = None;
-            } else if field.lost_focus() || !field.has_focus() {
-                *action = Some(Action::Rename(name.into(), renaming.name.trim().into()));
+        match rename_ui(ui, &mut self.renamed, name, "Name of the snapshot") {
+            Typed::Elsewhere => {}
+            Typed::Typing => return,
+            Typed::Done(new) => {
+                *action = Some(Action::Rename(name.into(), new));
+                return;
             }
-            return;
         }
         ui.horizontal(|ui| {
             let restore = ui.button(name).on_hover_text("Go back to this state, the point of view included.");
@@ -106,9 +95,7 @@ impl SnapshotList {
             Action::Show(name, side) => session.edit("Choose side", side.letter(), |document| {
                 document.compare.side_mut(side).snapshot = Some(name);
             }),
-            Action::StartRename(name) => {
-                self.renamed = Some(Renaming { old: name.clone(), name, fresh: true });
-            }
+            Action::StartRename(name) => self.renamed = Some(Renaming::new(name.clone(), &name)),
             Action::Rename(old, new) => {
                 self.renamed = None;
                 session.edit("Rename snapshot", &old, |document| document.rename_snapshot(&old, &new));

@@ -5,23 +5,15 @@ use eframe::egui;
 
 use super::Context;
 use crate::window::commands::Command;
+use crate::window::rename::{Renaming, Typed, rename_ui};
 use crate::window::request::Request;
 use crate::window::session::Session;
-use crate::window::widget::name_input;
 
 /// The list of cameras.
 #[derive(Default)]
 pub struct SavedSection {
-    /// The camera that is being renamed.
-    renamed: Option<Renaming>,
-}
-
-/// A camera whose name is being typed.
-struct Renaming {
-    place: usize,
-    name: String,
-    /// The field was not shown yet: it gets the keyboard once.
-    fresh: bool,
+    /// The camera that is being renamed, by its place.
+    renamed: Option<Renaming<usize>>,
 }
 
 /// What was clicked in the list.
@@ -53,17 +45,13 @@ impl SavedSection {
     }
 
     fn camera_ui(&mut self, ui: &mut egui::Ui, place: usize, camera: &CameraEntry, action: &mut Option<Action>) {
-        if let Some(renaming) = self.renamed.as_mut().filter(|renaming| renaming.place == place) {
-            let field = ui.add(egui::TextEdit::singleline(&mut renaming.name).desired_width(f32::INFINITY));
-            name_input(&field, "Name of the camera", &renaming.name);
-            if std::mem::take(&mut renaming.fresh) {
-                field.request_focus();
-            } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-                self.renamed = None;
-            } else if field.lost_focus() || !field.has_focus() {
-                *action = Some(Action::Rename(place, renaming.name.clone()));
+        match rename_ui(ui, &mut self.renamed, &place, "Name of the camera") {
+            Typed::Elsewhere => {}
+            Typed::Typing => return,
+            Typed::Done(name) => {
+                *action = Some(Action::Rename(place, name));
+                return;
             }
-            return;
         }
         ui.horizontal(|ui| {
             let name = &camera.name;
@@ -98,12 +86,11 @@ impl SavedSection {
                 }
             }),
             Action::StartRename(place) => {
-                let name = session.document().cameras.get(place).map(|camera| camera.name.clone());
-                self.renamed = name.map(|name| Renaming { place, name, fresh: true });
+                self.renamed = session.document().cameras.get(place).map(|camera| Renaming::new(place, &camera.name));
             }
             Action::Rename(place, name) => {
                 self.renamed = None;
-                session.edit("Rename camera", "", |document| document.rename_camera(place, name.trim()));
+                session.edit("Rename camera", "", |document| document.rename_camera(place, &name));
             }
             Action::Delete(place) => session.edit("Delete camera", "", |document| {
                 if place < document.cameras.len() {

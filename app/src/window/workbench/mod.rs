@@ -1,29 +1,30 @@
 //! Everything that is shown, put together: menus, docked panels, what panels ask for.
 
+mod acts;
+mod menu;
+
 use std::path::PathBuf;
 
 use burnish_core::document;
-use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{self, Event};
 use egui_tiles::Tree;
 
 use super::chart::Chart;
-use super::commands::{Command, Entry, Menu, TABLE};
 use super::compare::Compare;
-use super::files::{Files, Folders, is_table};
+use super::files::{Files, Folders};
 use super::palette::{Chosen, Palette};
-use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine, assign};
+use super::panel::{Context, Docked, Pane, Panels, StartPage, StatusLine};
 use super::preferences::Preferences;
 use super::preparations::Preparations;
 use super::reference::Reference;
 use super::request::{Request, Requests};
 use super::session::Session;
-use super::snapshots;
 use super::stage::Stage;
-use super::table_import::{Origin, TableImport};
+use super::table_import::TableImport;
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::user_presets::{Arrival, UserPresets};
-use super::{edits, layout, shortcuts, theme};
+use super::{layout, shortcuts, theme};
 
 /// Frames of the viewport's picture after which other pictures may be drawn.
 const RESTING_FRAMES: u32 = 4;
@@ -312,189 +313,6 @@ impl Workbench {
         if self.rearranged && !ctx.input(|input| input.pointer.any_down()) {
             self.preferences.layout = layout::store(&self.tree);
             self.rearranged = false;
-        }
-    }
-
-    /// Fulfils a wish of a panel.
-    fn fulfil(&mut self, request: Request, ctx: &egui::Context) {
-        match request {
-            Request::Command(command) => self.command(command, ctx),
-            Request::ImportPreset(path) => {
-                self.start = None;
-                match is_table(&path) {
-                    true => self.tables.open(Origin::File(path)),
-                    false => self.own.import(path),
-                }
-                ctx.request_repaint();
-            }
-            Request::ImportText(text) => {
-                self.start = None;
-                self.tables.open(Origin::Text(text));
-                ctx.request_repaint();
-            }
-            Request::AssignPreset { preset, materials } => {
-                if let Err(fault) = assign(&mut self.session, &self.own, &preset, &materials) {
-                    self.requests.push(Request::Error(fault));
-                }
-            }
-            Request::Notice(text) => self.toasts.notice(text, self.session.now_secs),
-            Request::Error(text) => self.toasts.error(text, self.session.now_secs),
-            about_files => {
-                if !matches!(about_files, Request::PickFile(_) | Request::WriteRecovery) {
-                    self.start = None;
-                }
-                self.files.fulfil(about_files, &mut self.session, ctx);
-            }
-        }
-        // An answer is shown in the next frame.
-        if !self.requests.is_empty() {
-            ctx.request_repaint();
-        }
-    }
-
-    /// Why a command can do nothing now, in words.
-    fn obstacle(&self, command: Command) -> Option<&'static str> {
-        if self.start.is_some() && !command.suits_start_page() {
-            return Some("Open a scene first.");
-        }
-        command.obstacle(&self.session)
-    }
-
-    /// For commands that switch something: whether it is on.
-    fn is_on(&self, command: Command) -> Option<bool> {
-        match command {
-            Command::Panel(pane) => Some(layout::is_shown(&self.tree, pane)),
-            Command::Orthographic => Some(self.session.document().view.camera.orthographic),
-            Command::Reference => Some(self.reference.is_on() && self.compare.view().is_none()),
-            Command::Compare(view) => Some(self.compare.view() == Some(view)),
-            Command::ThemeSystem => Some(self.preferences.dark.is_none()),
-            Command::ThemeLight => Some(self.preferences.dark == Some(false)),
-            Command::ThemeDark => Some(self.preferences.dark == Some(true)),
-            _ => None,
-        }
-    }
-
-    fn command(&mut self, command: Command, ctx: &egui::Context) {
-        if self.obstacle(command).is_some() {
-            return;
-        }
-        match command {
-            Command::Undo => _ = self.session.undo(),
-            Command::Redo => _ = self.session.redo(),
-            Command::Start => self.start = Some(StartPage::default()),
-            Command::Open
-            | Command::LoadEnvironment
-            | Command::Save
-            | Command::SaveAs
-            | Command::SaveImage
-            | Command::Notices
-            | Command::Quit => {
-                self.files.command(command, &mut self.session, (&self.stage, &self.reference), ctx);
-            }
-            Command::Frame
-            | Command::FrameAll
-            | Command::ViewFront
-            | Command::ViewRight
-            | Command::ViewTop
-            | Command::Orthographic
-            | Command::SaveCamera => self.panels.viewport.command(command, &mut self.session),
-            Command::CopyMaterial
-            | Command::PasteMaterial
-            | Command::NewMaterial
-            | Command::DuplicateMaterial
-            | Command::RemoveMaterial
-            | Command::ApplyToAll
-            | Command::ApplyToSelected
-            | Command::Hide
-            | Command::Isolate
-            | Command::ShowAll => edits::command(command, &mut self.session, &mut self.requests),
-            Command::Rename => {
-                self.show_panel(Pane::Scene);
-                self.panels.scene.rename(&self.session);
-            }
-            Command::Reference => {
-                self.reference.switch(!self.reference.is_on());
-                self.compare.show(None);
-            }
-            Command::Compare(view) => {
-                self.reference.switch(false);
-                self.compare.show(Some(view).filter(|view| self.compare.view() != Some(*view)));
-            }
-            Command::StoreSide(_) | Command::SwapSides | Command::TakeSnapshot => {
-                snapshots::command(command, &mut self.session, &mut self.requests);
-            }
-            Command::Panel(pane) => {
-                layout::toggle(&mut self.tree, pane);
-                self.rearranged = true;
-            }
-            Command::ResetLayout => {
-                self.tree = layout::initial();
-                self.preferences.layout = None;
-            }
-            Command::Palette => self.palette = if self.palette.is_some() { None } else { Some(Palette::default()) },
-            Command::Shortcuts => self.shortcut_page = !self.shortcut_page,
-            Command::ScaleUp => self.preferences.ui_scale = theme::scaled(self.preferences.ui_scale, 1.0),
-            Command::ScaleDown => self.preferences.ui_scale = theme::scaled(self.preferences.ui_scale, -1.0),
-            Command::ScaleReset => self.preferences.ui_scale = 1.0,
-            Command::ThemeSystem => self.preferences.dark = None,
-            Command::ThemeLight => self.preferences.dark = Some(false),
-            Command::ThemeDark => self.preferences.dark = Some(true),
-        }
-        ctx.request_repaint();
-    }
-
-    /// Commands whose keys were pressed; those without a modifier only while no text is edited.
-    fn shortcuts(&mut self, ui: &egui::Ui) {
-        // A dialog has the keys for itself; only the palette's own takes it away again.
-        let modal = ui.memory(|memory| memory.top_modal_layer().is_some());
-        let typing = ui.ctx().egui_wants_keyboard_input();
-        // `Ctrl+=` stands for `Ctrl++` where plus needs Shift.
-        let plus = KeyboardShortcut::new(Modifiers::COMMAND, Key::Equals);
-        let second = Command::ScaleUp.entry().map(|entry| (plus, entry));
-        let mut keys: Vec<(KeyboardShortcut, &Entry)> =
-            TABLE.iter().filter_map(|entry| Some((entry.shortcut?, entry))).chain(second).collect();
-        // Keys match although more modifiers are held: those with Shift go first.
-        keys.sort_by_key(|(shortcut, _)| !shortcut.modifiers.shift);
-        for (shortcut, entry) in keys {
-            let function_key = matches!(shortcut.logical_key, Key::F1);
-            let blocked =
-                modal && entry.command != Command::Palette || shortcut.modifiers.is_none() && !function_key && typing;
-            // Alt belongs to window managers and navigation, and is in no shortcut.
-            if !blocked && ui.input_mut(|input| !input.modifiers.alt && input.consume_shortcut(&shortcut)) {
-                self.requests.push(Request::Command(entry.command));
-            }
-        }
-    }
-
-    fn menu_ui(&mut self, ui: &mut egui::Ui) {
-        egui::MenuBar::new().ui(ui, |ui| {
-            for menu in Menu::ALL {
-                ui.menu_button(menu.title(), |ui| {
-                    for (index, entry) in TABLE.iter().filter(|entry| entry.menu == menu).enumerate() {
-                        if entry.begins_group() && index > 0 {
-                            ui.separator();
-                        }
-                        self.menu_entry_ui(ui, entry);
-                    }
-                });
-            }
-        });
-    }
-
-    fn menu_entry_ui(&mut self, ui: &mut egui::Ui, entry: &Entry) {
-        let obstacle = self.obstacle(entry.command);
-        let mut button = match self.is_on(entry.command) {
-            Some(on) => egui::Button::selectable(on, entry.title),
-            None => egui::Button::new(entry.title),
-        };
-        if let Some(shortcut) = &entry.shortcut {
-            button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
-        }
-        let response = ui.add_enabled(obstacle.is_none(), button).on_hover_text(entry.help);
-        if let Some(reason) = obstacle {
-            response.on_disabled_hover_text(reason);
-        } else if response.clicked() {
-            self.requests.push(Request::Command(entry.command));
         }
     }
 }

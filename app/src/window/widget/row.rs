@@ -1,0 +1,58 @@
+//! The parts that rows have in common: places, names that can be read out, the reset arrow.
+
+use eframe::egui::{self, Align, Layout, Response, Sense, WidgetInfo, vec2};
+
+use crate::window::icon::{Icon, icon_button};
+
+/// Part of a row that the name takes.
+const NAME_SHARE: f32 = 0.36;
+/// Points of the reset arrow.
+pub(super) const RESET_WIDTH: f32 = 18.0;
+
+/// Widths of names and of controls in rows like those of [`param_ui`].
+pub fn columns(ui: &egui::Ui) -> [f32; 2] {
+    let gap = ui.spacing().item_spacing.x;
+    let both = ui.available_width() - RESET_WIDTH - gap;
+    [both * NAME_SHARE, (both - both * NAME_SHARE - gap).max(40.0)]
+}
+
+/// Name of a row with a dot in front of what was changed. Its text names the control.
+pub fn name_ui(ui: &mut egui::Ui, name: &str, changed: bool, width: f32) -> Response {
+    let height = ui.spacing().interact_size.y;
+    let inner = ui.allocate_ui_with_layout(vec2(width, height), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(width);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let (dot, _) = ui.allocate_exact_size(vec2(6.0, height), Sense::hover());
+        if changed {
+            ui.painter().circle_filled(dot.center(), 2.5, ui.visuals().hyperlink_color);
+        }
+        let text = if changed { egui::RichText::new(name).strong() } else { name.into() };
+        ui.add(egui::Label::new(text).truncate().selectable(false))
+    });
+    // The rectangle of the whole place, the identity of the text.
+    Response { rect: inner.response.rect, ..inner.inner }
+}
+
+/// The arrow that takes a change back; it keeps its place where there is none.
+pub fn reset_ui(ui: &mut egui::Ui, label: &str, changed: bool) -> bool {
+    let size = vec2(RESET_WIDTH, ui.spacing().interact_size.y);
+    if !changed {
+        ui.allocate_exact_size(size, Sense::hover());
+        return false;
+    }
+    icon_button(ui, Icon::Reset, size, &format!("Reset {label}")).clicked()
+}
+
+/// Gives a button whose text is short a name that can be read out.
+pub fn name_widget(response: &Response, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, response.enabled(), name));
+}
+
+/// Gives a text field a name that can be read out.
+pub fn name_input(response: &Response, name: &str, text: &str) {
+    response.widget_info(|| {
+        let mut info = WidgetInfo::text_edit(response.enabled(), text, text, "");
+        info.label = Some(name.into());
+        info
+    });
+}

@@ -98,7 +98,7 @@ fn sizes_that_lie_are_refused_before_memory_is_taken() {
     }
     let reason = |arrays: &str, data: &[u8]| decode(arrays, data).unwrap_err();
     assert!(reason(r#"{"name":"a","type":"f64","count":1}"#, &[0; 16]).contains("8 bytes that it does not announce"));
-    assert!(reason(r#"{"name":"a","type":"f24","count":1}"#, &[0; 8]).contains("unknown type `f16`"));
+    assert!(reason(r#"{"name":"a","type":"f24","count":1}"#, &[0; 8]).contains("unknown type `f24`"));
     let twice = r#"{"name":"a","type":"u8","count":0},{"name":"a","type":"u8","count":0}"#;
     assert!(reason(twice, &[]).contains("two arrays `a`"));
     assert!(reason(r#"{"name":"a","type":"f64","count":-1}"#, &[]).contains("makes no sense"));

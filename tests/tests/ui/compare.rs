@@ -18,6 +18,7 @@ pub fn trials() -> Vec<Trial> {
         trial("the_error_of_the_live_picture_is_mapped_and_dropped_when_it_changes", &[], mapped),
         trial("a_button_over_the_picture_hears_a_click_of_several_frames", &[], slow_click),
         trial("both_sides_can_be_traced", &[], traced),
+        trial("a_side_that_the_processor_draws_is_shown_and_compared", &[], by_processor),
     ]
 }
 
@@ -212,4 +213,30 @@ fn traced() {
     assert!(map.is_some_and(|mean| mean > 0.0), "{map:?}");
     bench.keys(Modifiers::NONE, Key::D);
     bench.until("the thread rests", |w| !w.reference().is_tracing());
+}
+
+fn by_processor() {
+    let mut bench = Bench::new(Setup {
+        name: "compare-processor",
+        scene: Some("gallery:ball"),
+        size: [560.0, 320.0],
+        drawn: false,
+    });
+    bench.keys(Modifiers::COMMAND, Key::Num1);
+    let keys = bench.session().resolved().object_keys.clone();
+    bench.workbench().session_mut().edit("Light all otherwise", "", |document| {
+        keys.iter().for_each(|key| document.lighting.override_object(key, Some("reference")));
+    });
+    bench.workbench().ask(Request::Command(Command::Compare(CompareView::Difference)));
+    // A is the flat grey of a window without a device.
+    bench.until("B is drawn and compared with A", |w| w.compare().maps.shown().is_some());
+    let mean = |bench: &Bench| compare(bench).maps.shown().map(|(map, _)| map.mean);
+    assert!(mean(&bench).is_some_and(|mean| mean > 0.1), "{:?}", mean(&bench));
+    bench.keys(Modifiers::NONE, Key::D);
+    // Both follow paths, each with points of its own: what is left is noise and the form of the metals.
+    bench.keys(Modifiers::NONE, Key::E);
+    bench.until("the picture is compared with the reference", |w| w.compare().maps.shown().is_some());
+    bench.until("it refines", |w| w.compare().maps.shown().is_some_and(|(map, _)| map.mean < 0.1));
+    bench.keys(Modifiers::NONE, Key::E);
+    bench.until("the threads rest", |w| !w.reference().is_tracing());
 }

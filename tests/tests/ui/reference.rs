@@ -186,13 +186,17 @@ fn lit_otherwise() {
     let name = bench.session().scene().instances[0].name.clone();
     let method = |bench: &Bench| bench.session().document().lighting.overrides.get(&key).map(|o| o.method.clone());
     bench.workbench().show_panel(Pane::Environment);
+    bench.until_shown("Objects lit otherwise");
     bench.click("Objects lit otherwise");
     bench.workbench().session_mut().selection.objects = vec![key.clone()];
     bench.click("Light the selection otherwise");
     assert_eq!(method(&bench).as_deref(), Some("reference"));
     // The cubes of the scene's own method are made, then both draw.
     bench.until("it is drawn on the processor", |w| w.reference().shown().is_some_and(|look| look.samples >= 2));
-    bench.until_shown("1 object lit otherwise, drawn on the processor");
+    bench.until_shown(
+        "classical; no lamps; environment: approximate; indirect diffuse: nothing; indirect glossy: nothing; \
+         1 object lit otherwise, drawn on the processor",
+    );
     bench.click_role(Role::ComboBox, &format!("Method of {name}"));
     bench.click_role(Role::Button, "Classical");
     assert_eq!(method(&bench).as_deref(), Some("classical"));

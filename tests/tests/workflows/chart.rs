@@ -32,7 +32,9 @@ pub fn a_chart_is_the_same_twice_and_kept_in_between() {
         assert!(number(row, "frame_ms") > 0.0 && number(row, "frame_ratio") > 0.0, "{first}");
         assert!(number(row, "subject_relmse") > 0.0 && number(row, "frame_flip_floor") > 0.0, "{first}");
     }
-    assert!(number(1, "memory_bytes") > 1e4 && rows[3][column("memory_bytes")].is_empty(), "{first}");
+    assert!((1..4).all(|row| number(row, "memory_bytes") > 1e4), "{first}");
+    // Both candidates of one method look up the same.
+    assert_eq!(rows[1][column("prepare_s")], rows[2][column("prepare_s")], "{first}");
     let drawn = fs::read_to_string(&svg).expect("a chart");
     assert!(drawn.starts_with("<svg xmlns") && drawn.contains("samples 2"), "{drawn}");
     assert!(fs::read_to_string(&html).expect("a page").contains("noise of the reference"));

@@ -10,7 +10,7 @@ use burnish_core::param::ParamValue;
 use burnish_tests::scratch_folder;
 
 use super::rendering::{grey_environment, render};
-use super::{INPUT, burnish, text, triangle};
+use super::{INPUT, USAGE, burnish, text, triangle};
 
 /// A gold triangle under a grey sky, seen from straight in front and two stops brighter.
 pub fn document(folder: &Path) -> (Document, PathBuf) {
@@ -64,4 +64,34 @@ pub fn render_shows_a_document() {
     let brighter = middle("b.png", &[]);
     let expected = (4.0 * linear).min(glam::Vec3::ONE);
     assert!((brighter - expected).abs().max_element() < 0.02, "{brighter} for {linear} two stops up");
+}
+
+/// No device is needed: several methods, or `--processor`, draw without one.
+pub fn render_lights_objects_otherwise() {
+    let folder = scratch_folder("document-otherwise");
+    let (mut document, path) = document(&folder);
+    let cache = folder.join("cache");
+    let draw = |name: &str, more: &[&str]| {
+        let file = folder.join(name);
+        let fixed = ["render", text(&path), "--size", "96x64", "--cache", text(&cache), "--samples", "4"];
+        let done = burnish(&[&fixed[..], &["--out", text(&file)], more].concat()).succeeded();
+        (done.out, read_picture(&file).expect("a picture").0)
+    };
+    let (said, plain) = draw("plain.exr", &["--processor"]);
+    assert!(said.contains("4 samples by classical,") && !said.contains("object"), "{said}");
+    render(&folder.join("no.exr"), &[text(&path), "--processor"]).failed(USAGE, &["--spp-jitter", "--samples"]);
+    let (_, paths) = draw("paths.exr", &["--method", "reference"]);
+
+    let key = document::object_keys(&document::load_model(&document.scene).expect("a model").0)[0].clone();
+    document.lighting.override_object(&key, Some("reference"));
+    document.save(&path).expect("a writable folder");
+    let (said, mixed) = draw("mixed.exr", &[]);
+    assert!(said.contains("4 samples by classical, 1 object by another method"), "{said}");
+    // The only object is traced: in the form of the live method, which keeps 1 % of the measured curve.
+    let at = |picture: &burnish_core::picture::Picture| picture.texels[32 * 96 + 48].truncate();
+    assert!((at(&mixed) / at(&paths) - 1.0).abs().max_element() < 0.02, "{} is not {}", at(&mixed), at(&paths));
+    let (said, again) = draw("again.exr", &["--method", "classical", "--processor"]);
+    assert!(!said.contains("object"), "a method on the command line lights all: {said}");
+    assert_eq!(again.texels, plain.texels);
+    assert_eq!(fs::read_dir(&cache).expect("a folder").count(), 1, "all have one preparation");
 }

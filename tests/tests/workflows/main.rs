@@ -49,6 +49,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a picture that cannot be saved is refused before it is rendered", &[], rendering::an_unwritable_picture),
         trial("a reader that goes away early is no failure", &[], a_closed_pipe),
         trial("info describes a document as it was edited", &[], documents::info_describes_a_document),
+        trial("render lights objects as the document says", &[], documents::render_lights_objects_otherwise),
         trial("a document with a missing file is not rendered", &[], documents::a_missing_file_is_not_rendered),
         trial("a scene is exported with a report", &[], exporting::a_scene_is_exported_with_a_report),
         trial("scenes of the gallery are written as glb", &[], exporting::scenes_of_the_gallery_are_written_as_glb),

@@ -86,6 +86,11 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         true => (reference.given(), REFERENCE),
         false => (classical.given(), lighting::classical::ID),
     };
+    if let (Some(option), true) = (foreign, id == lighting::classical::ID && !on_device) {
+        return Err(Failure::usage(format!(
+            "{option} is for pictures of the graphics device; leave it out, or give --samples for this one"
+        )));
+    }
     if let Some(option) = foreign {
         return Err(Failure::usage(format!(
             "{option} belongs to --method {other}; choose that, or leave {option} out"

@@ -131,6 +131,11 @@ impl Compare {
         if self.is_second(session, side) { &mut self.second } else { main }
     }
 
+    /// Draws the live picture on the processor while the window's own thread traces its reference.
+    pub fn second(&mut self) -> &mut Reference {
+        &mut self.second
+    }
+
     /// The same, to look at.
     pub fn tracer_of<'a>(&'a self, main: &'a Reference, session: &Session, side: Side) -> &'a Reference {
         if self.is_second(session, side) { &self.second } else { main }

@@ -12,6 +12,7 @@ use super::overlay;
 use crate::number::short;
 use crate::window::compare::{Compare, CompareView, Legend, Pictures, SideScene, Source, value_at};
 use crate::window::panel::Context;
+use crate::window::preparations::drawn_on_device;
 use crate::window::reference::{Look, Subject};
 use crate::window::stage::{Screen, Shown};
 
@@ -249,11 +250,11 @@ fn traced(look: Option<&Look>) -> Option<Source> {
 
 /// The live picture with the map of its error against the reference.
 fn error_ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>, frame: &Frame) -> Shown {
+    context.compare.turn(context.session);
+    let Live { shown, part, picture } = live(ui.ctx(), context, frame);
     let Context { session, stage, reference, compare, .. } = context;
-    compare.turn(session);
-    let shown = stage.draw(session.scene(), frame);
     compare.note(Side::B, shown.settled);
-    let drawn = Drawn { texture: shown.texture, part: Vec2::ONE, label: String::new() };
+    let drawn = Drawn { texture: shown.texture, part, label: String::new() };
     paint(ui, rect, rect, &drawn);
     // On a processor that draws as well as traces the live picture goes first: without it there is no map.
     let waits = !shown.settled && stage.status().is_some_and(|status| status.software);
@@ -263,16 +264,43 @@ fn error_ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>, frame: &Fr
     if let Some(secs) = reference.rests_for() {
         ui.ctx().request_repaint_after_secs(secs as f32);
     }
-    let picture = compare.maps.live(Side::B, shown.settled, || stage.read(Screen::Main, frame.size));
     let pictures = truth.zip(picture).map(|(reference, picture)| Pictures {
         reference,
-        picture: Source { picture, samples: None },
+        picture,
         exposure_ev: frame.exposure_ev,
         metric: compare.metric,
     });
     let reading = compare.maps.is_reading();
     map_ui(ui, rect, context, pictures);
     Shown { settled: shown.settled && !reading, message: shown.message.or(failure), ..shown }
+}
+
+/// The live picture under a map.
+struct Live {
+    shown: Shown,
+    /// Part of the texture that is the picture.
+    part: Vec2,
+    /// Its numbers, once they are on the processor.
+    picture: Option<Source>,
+}
+
+/// Draws it: on the device, or where its methods draw.
+fn live(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> Live {
+    let Context { session, stage, compare, preparations, .. } = context;
+    let layers = session.layers();
+    let prepared = if drawn_on_device(&layers) { None } else { preparations.prepared(&layers) };
+    if let Some(prepared) = prepared {
+        let subject = Subject::new(session.document(), session.scene(), &frame.camera, frame.size);
+        let look = compare.second().look(subject.by_points(layers, prepared), ctx);
+        let Some(look) = look else {
+            return Live { shown: Shown { settled: true, ..Shown::default() }, part: Vec2::ONE, picture: None };
+        };
+        let shown = stage.show_on(Screen::Main, &look.picture, frame.tone, frame.exposure_ev);
+        return Live { shown, part: look.part(), picture: traced(Some(look)) };
+    }
+    let shown = stage.draw(session.scene(), frame);
+    let picture = compare.maps.live(Side::B, shown.settled, || stage.read(Screen::Main, frame.size));
+    Live { shown, part: Vec2::ONE, picture: picture.map(|picture| Source { picture, samples: None }) }
 }
 
 /// The map, its legend, and the value under the pointer.

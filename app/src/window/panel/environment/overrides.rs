@@ -40,18 +40,11 @@ fn override_ui(ui: &mut egui::Ui, session: &mut Session, key: &str, entry: &Over
     let name = place.map_or(key, |place| &session.scene().instances[place].name).to_string();
     ui.horizontal(|ui| {
         let [names, controls] = columns(ui);
-        let label = name_ui(ui, &name, true, names);
+        name_ui(ui, &name, true, names);
         let width = controls - 24.0;
         let hover = "The method that lights this object.";
-        let picked = choice_ui(
-            ui,
-            &format!("Method of {name}"),
-            &titles,
-            chosen.unwrap_or(usize::MAX),
-            width,
-            Some(&label),
-            hover,
-        );
+        let picked =
+            choice_ui(ui, &format!("Method of {name}"), &titles, chosen.unwrap_or(usize::MAX), width, None, hover);
         if let Some(method) = picked.and_then(|picked| methods.get(picked)) {
             session.edit(LABEL, key, |document| {
                 document.lighting.override_object(key, Some(method.info().id.0));

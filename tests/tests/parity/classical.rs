@@ -128,7 +128,7 @@ fn prefilter_inputs() -> Vec<[Vec4; 2]> {
 
 fn prefilter(x: &[Vec4; 2]) -> [Vec4; 1] {
     let sources = &SOURCES[..x[1].z as usize];
-    [v4(classical::prefilter(&Formulas, x[0].xyz(), x[0].w, x[1].x as u32, sources), 0.0)]
+    [v4(classical::prefilter((light, RADIANCE_LEVELS), x[0].xyz(), x[0].w, x[1].x as u32, sources), 0.0)]
 }
 
 const ENVIRONMENT: &str = "

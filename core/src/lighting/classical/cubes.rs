@@ -148,7 +148,8 @@ fn prefiltered_cube(
         let (from, sources) = if wide { (dark, bright) } else { (radiance, &[][..]) };
         builder.fill(level, job, |texel| {
             let normal = mirrored(texel.direction(Vec2::splat(0.5)));
-            prefilter(&Plain(*from), normal, alpha, prefilter_samples(level), sources)
+            let lookup = |d: Vec3, level: f32| from.lookup(mirrored(d), level);
+            prefilter((lookup, from.levels() as f32), normal, alpha, prefilter_samples(level), sources)
         })?;
         job.set_progress(0.6 + 0.4 * level as f32 / levels as f32);
     }
@@ -158,47 +159,6 @@ fn prefiltered_cube(
 /// Cube maps are left-handed.
 fn mirrored(d: Vec3) -> Vec3 {
     Vec3::new(d.x, d.y, -d.z)
-}
-
-/// One cube of radiance, for [`prefilter`], which reads nothing else.
-struct Plain<'a>(CubeMap<'a>);
-
-impl Maps for Plain<'_> {
-    fn radiance(&self, direction: Vec3, level: f32) -> Vec3 {
-        self.0.lookup(mirrored(direction), level)
-    }
-
-    fn dimmed(&self, direction: Vec3, level: f32) -> Vec3 {
-        self.radiance(direction, level)
-    }
-
-    fn source_count(&self) -> usize {
-        0
-    }
-
-    fn source(&self, _: usize) -> Source {
-        Source { direction: Vec3::Y, power: Vec3::ZERO }
-    }
-
-    fn wide_alpha(&self) -> f32 {
-        1.0
-    }
-
-    fn prefiltered(&self, direction: Vec3, level: f32) -> Vec3 {
-        self.radiance(direction, level)
-    }
-
-    fn irradiance(&self, normal: Vec3) -> Vec3 {
-        self.radiance(normal, (self.0.levels() - 1) as f32)
-    }
-
-    fn radiance_levels(&self) -> f32 {
-        self.0.levels() as f32
-    }
-
-    fn prefiltered_levels(&self) -> f32 {
-        self.radiance_levels()
-    }
 }
 
 /// What [`prepare`] made, looked up in the world's directions.

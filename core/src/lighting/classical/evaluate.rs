@@ -92,12 +92,17 @@ fn source_weight(normal: Vec3, alpha: f32, direction: Vec3) -> f32 {
 }
 
 /// Radiance filtered with the GGX lobe of N = V = R by `n` samples: weight D(h) cos(theta_i). `sources` are left out of
-/// the map and added exactly.
+/// the map, which is given as [`Maps::radiance`] and its levels, and added exactly.
 ///
 /// Karis 2013, Real Shading in Unreal Engine 4, with the footprint of Krivanek and Colbert 2008.
-pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[Source]) -> Vec3 {
+pub fn prefilter(
+    (radiance, levels): (impl Fn(Vec3, f32) -> Vec3, f32),
+    normal: Vec3,
+    alpha: f32,
+    n: u32,
+    sources: &[Source],
+) -> Vec3 {
     let frame = Frame::new(normal);
-    let levels = maps.radiance_levels();
     let a2 = alpha * alpha;
     let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
     for i in 0..n {
@@ -115,7 +120,7 @@ pub fn prefilter(maps: &impl Maps, normal: Vec3, alpha: f32, n: u32, sources: &[
         let wi = frame.to_world(Vec3::new(sin_i * cos_phi, sin_i * sin_phi, cos_i));
         let pdf = 0.25 * ggx::distribution(h, Vec2::splat(alpha));
         let level = footprint(wi, pdf, n, levels, OVERLAP);
-        sum += cos_i * maps.radiance(wi, level);
+        sum += cos_i * radiance(wi, level);
         weight += cos_i;
     }
     for source in sources {

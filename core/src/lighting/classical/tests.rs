@@ -175,7 +175,9 @@ fn prefiltering_agrees_with_the_exact_integral() {
     for alpha in [0.05, 0.2, 0.6, 1.0] {
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::new(0.6, 0.8, 0.0)] {
             let exact = texels.prefiltered(normal, alpha).x;
-            let got = f64::from(prefilter(&Tilted, normal, alpha, 2048, &[]).x);
+            let got = f64::from(
+                prefilter((|d, l| Tilted.radiance(d, l), Tilted.radiance_levels()), normal, alpha, 2048, &[]).x,
+            );
             // The map of 256 texels interpolates a sine: 1e-4; 2048 points of the lobe: 1e-3.
             assert!((got - exact).abs() < 3e-3, "{got} for {exact} at alpha {alpha}, {normal}");
         }
@@ -195,7 +197,9 @@ fn a_source_split_off_filters_like_the_map_it_came_from() {
     for alpha in [0.2, 0.5, 1.0] {
         let normal = (toward + Vec3::new(0.2, 0.1, 0.0)).normalize();
         let exact = texels.prefiltered(normal, alpha);
-        let got = prefilter(&Constant(0.25), normal, alpha, 512, &split.sources).as_dvec3();
+        let got =
+            prefilter((|_, _| Vec3::splat(0.25), Constant(0.25).radiance_levels()), normal, alpha, 512, &split.sources)
+                .as_dvec3();
         // The sun is a point here and a texel of 0.025 rad there: 2nd order in its size over the lobe's width.
         assert!(((got - exact).abs() / exact).max_element() < 0.01, "{got} for {exact} at alpha {alpha}");
     }

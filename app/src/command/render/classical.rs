@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::time::Instant;
 
+use burnish_core::document::Document;
 use burnish_core::file::write_picture;
 use burnish_core::lighting::classical;
 use burnish_core::param::Settings;
@@ -40,7 +41,9 @@ pub fn run(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let document = opened.document.as_ref();
+    // Settings of another live method are none of this one.
+    let is_live = |document: &&Document| document.lighting.live_method().info().id.0 == classical::ID;
+    let document = opened.document.as_ref().filter(is_live);
     let mut settings = document.map_or_else(|| Settings::new(classical::PARAMS), |d| d.lighting.settings());
     assign(&mut settings, set)?;
     let choice = classical::form_choice(&settings);

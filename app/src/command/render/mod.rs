@@ -68,7 +68,7 @@ struct Output {
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
     let Args { stage, output, method, processor, set, cache, classical, reference } = args;
     output.check()?;
-    // Read before the scene is, so that what can be refused is refused at once.
+    // Where no method is given the document says it; else what can be refused is refused before the scene is read.
     let opened = match method {
         Some(_) => None,
         None => Some(stage.open()?),

@@ -22,7 +22,8 @@ impl StatusLine {
         let status = context.stage.status();
         ui.horizontal(|ui| {
             let items = match context.reference.shown() {
-                Some(look) => traced(look),
+                Some(look) if context.reference.is_on() => traced(look),
+                Some(look) => [vec![refined(look)], traced(look)].concat(),
                 None => status.map(picture).unwrap_or_default(),
             };
             for (text, hover) in items {
@@ -90,6 +91,12 @@ fn traced(look: &Look) -> Vec<(String, &'static str)> {
         items.push((text, "Samples that were not finite; they count as if they had not been drawn."));
     }
     items
+}
+
+/// How far a live picture of the processor is.
+fn refined(look: &Look) -> (String, &'static str) {
+    let text = if look.samples == 1 { "1 sample".into() } else { format!("{} samples", look.samples) };
+    (text, "Samples of each pixel: the processor draws this picture and refines it while nothing changes.")
 }
 
 fn triangles(scene: &Scene) -> String {

@@ -46,8 +46,7 @@ impl Preparations {
     pub fn follow(&mut self, layers: &Layers, scene: &Arc<Scene>, ctx: &egui::Context) {
         if drawn_on_device(layers) {
             // The device makes what it looks up.
-            self.each.clear();
-            return;
+            return self.forget();
         }
         let mut asked: Vec<Asked> = Vec::new();
         for layer in layers.iter() {
@@ -70,6 +69,11 @@ impl Preparations {
             asked.push(by);
         }
         self.each.retain(|(known, _)| asked.contains(known));
+    }
+
+    /// Gives back what is held, and ends what runs.
+    pub fn forget(&mut self) {
+        self.each.clear();
     }
 
     /// That of the scene's method; `None` where it needs none.

@@ -202,6 +202,7 @@ impl Compare {
         self.sides.end_frame();
         if !self.view.is_some_and(CompareView::has_sides) {
             stage.close_second();
+            self.preparations.iter_mut().for_each(Preparations::forget);
         }
         if !self.view.is_some_and(CompareView::has_map) {
             self.maps = MapDesk::default();

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use burnish_core::lighting::{Layer, Layers, MethodId, Prepared, Store};
-use burnish_core::param::Affects;
+use burnish_core::lighting::prepared::Asked;
+use burnish_core::lighting::{Layer, Layers, Prepared, Store};
 use burnish_core::scene::Scene;
 use eframe::egui;
 
@@ -13,21 +13,6 @@ use super::preparation::Preparation;
 pub struct Preparations {
     store: Store,
     each: Vec<(Asked, Preparation)>,
-}
-
-/// What one is made for, but for the scene.
-#[derive(Clone, Debug, PartialEq)]
-struct Asked {
-    method: MethodId,
-    settings: Vec<(&'static str, Option<String>)>,
-}
-
-impl Asked {
-    fn by(layer: &Layer) -> Asked {
-        let settings = layer.settings.iter().filter(|(spec, _)| spec.affects == Affects::Prepare);
-        let settings = settings.map(|(spec, _)| (spec.key, layer.settings.text(spec.key))).collect();
-        Asked { method: layer.method.info().id, settings }
-    }
 }
 
 /// The graphics device draws the scene: one method lights it, and has a pass there.
@@ -50,7 +35,7 @@ impl Preparations {
         }
         let mut asked: Vec<Asked> = Vec::new();
         for layer in layers.iter() {
-            let by = Asked::by(layer);
+            let by = layer.asked();
             if asked.contains(&by) {
                 continue;
             }
@@ -84,7 +69,7 @@ impl Preparations {
     /// What there is for each layer, perhaps stale; `None` until all have something.
     pub fn prepared(&self, layers: &Layers) -> Option<Vec<Arc<Prepared>>> {
         let of = |layer: &Layer| {
-            let by = Asked::by(layer);
+            let by = layer.asked();
             self.each.iter().find(|(known, _)| *known == by)?.1.prepared(layer.method)
         };
         layers.iter().map(of).collect()

@@ -1,4 +1,5 @@
-//! The choice of a lighting method, of others for some objects, and the document as a method with certain settings shows it, as a side of the comparison.
+//! The choice of a lighting method, of others for some objects, and the document as a method with certain settings shows
+//! it, as a side of the comparison.
 
 use std::sync::Arc;
 
@@ -110,8 +111,7 @@ impl OverrideEntry {
 
 /// The methods that can light single objects.
 pub fn mixed_methods() -> impl Iterator<Item = &'static dyn Method> {
-    let all = lighting::methods().into_iter();
-    all.filter(|method| method.points().is_some() || method.info().id.0 == reference::ID)
+    lighting::methods().into_iter().filter(|method| method.is_on_processor())
 }
 
 impl Document {

@@ -28,14 +28,14 @@ pub struct CubeMapBuilder {
     texels: Vec<f16>,
 }
 
-/// Where a level starts, in numbers.
+/// Where a level starts, in numbers: after the sum of a quarter less of each finer one, faces being powers of two.
 fn start(face: u32, level: u32) -> usize {
-    (0..level).map(|level| numbers(face, level)).sum()
+    24 * ((face as usize).pow(2) - (edge(face, level) as usize).pow(2))
 }
 
 /// Numbers of a level.
 fn numbers(face: u32, level: u32) -> usize {
-    18 * ((face >> level).max(1) as usize).pow(2)
+    18 * (edge(face, level) as usize).pow(2)
 }
 
 /// Texels along the edge of a level of a cube map with `face` texels along that of its finest.
@@ -44,7 +44,7 @@ fn edge(face: u32, level: u32) -> u32 {
 }
 
 impl<'a> CubeMap<'a> {
-    /// With `face` texels along an edge of the finest level; numbers that are missing are zero.
+    /// With `face` texels along an edge of the finest level, a power of two; numbers that are missing are zero.
     pub fn new(face: u32, levels: u32, texels: &'a [f16]) -> CubeMap<'a> {
         CubeMap { face: face.max(1), levels: levels.max(1), texels }
     }
@@ -105,9 +105,9 @@ impl<'a> CubeMap<'a> {
 }
 
 impl CubeMapBuilder {
-    /// Black, with `face` texels along an edge of the finest of `levels`.
+    /// Black, with `face` texels along an edge of the finest of `levels`; a power of two, and no more than it has.
     pub fn new(face: u32, levels: u32) -> CubeMapBuilder {
-        CubeMapBuilder { face, levels, texels: vec![f16::ZERO; start(face, levels)] }
+        CubeMapBuilder { face, levels, texels: vec![f16::ZERO; start(face, levels - 1) + numbers(face, levels - 1)] }
     }
 
     /// Computes a level on the current rayon pool: `f` gets level `level`'s finer one (itself for the finest), the face

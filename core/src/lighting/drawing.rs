@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::{UVec2, Vec3};
 
 use super::layers::Layers;
-use super::method::{Cover, Method, MethodInfo, ShadePoint};
+use super::method::{Cover, Method, ShadePoint};
 use super::prepared::Prepared;
 use crate::param::Settings;
-use crate::reference::{self, Control, Eye, Film, FirstHit, Pass, PathSample, View, World, trace_with};
+use crate::reference::{Control, Eye, Film, FirstHit, Pass, PathSample, View, World, trace_with};
 
 /// Methods ready to draw a scene.
 #[derive(Clone)]
@@ -34,10 +34,9 @@ struct Lit<'a> {
 
 impl<'a> Lit<'a> {
     fn new(method: &'a dyn Method, prepared: &'a Prepared, settings: &'a Settings) -> Option<Lit<'a>> {
-        let MethodInfo { id, coverage, .. } = method.info();
-        let points = method.points();
-        (points.is_some() || id.0 == reference::ID).then_some(Lit {
-            points,
+        let coverage = method.info().coverage;
+        method.is_on_processor().then_some(Lit {
+            points: method.points(),
             prepared,
             settings,
             adds_lamps: coverage.lamps == Cover::None,
@@ -118,8 +117,8 @@ mod tests {
 
     use super::*;
     use crate::job::Handle;
-    use crate::lighting::{Coverage, Layer, MethodId, Reads, Store, classical};
-    use crate::reference::{Options, SurfacePoint, trace};
+    use crate::lighting::{Coverage, Layer, MethodId, MethodInfo, Reads, Store, classical};
+    use crate::reference::{self, Options, SurfacePoint, trace};
     use crate::scene::{Environment, Light, LightKind, gallery};
 
     /// Leaves all light to the frame.

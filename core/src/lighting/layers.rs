@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::drawing::Drawing;
 use super::method::{Method, MethodError};
-use super::prepared::{Prepared, Store};
+use super::prepared::{Asked, Prepared, Store, key};
 use crate::job::Handle;
 use crate::param::Settings;
-use crate::reference::{self, World};
+use crate::reference::{Control, Film, Pass, View, World};
 
 /// A method with its settings, and what it lights.
 #[derive(Clone, Debug)]
@@ -24,6 +25,13 @@ pub struct Layer {
 pub struct Layers {
     first: Layer,
     others: Vec<Layer>,
+}
+
+impl Layer {
+    /// What it looks up is made for this.
+    pub fn asked(&self) -> Asked {
+        Asked::by(self.method, &self.settings)
+    }
 }
 
 impl PartialEq for Layer {
@@ -70,21 +78,39 @@ impl Layers {
 
     /// The processor can draw all of them.
     pub fn are_on_processor(&self) -> bool {
-        self.iter().all(|layer| layer.method.points().is_some() || layer.method.info().id.0 == reference::ID)
+        self.iter().all(|layer| layer.method.is_on_processor())
     }
 
     /// The preparations of all, in order: read from a store, or made. The same is made once.
     pub fn prepare(&self, store: &Store, world: &World, job: &Handle) -> Result<Vec<Arc<Prepared>>, MethodError> {
-        let mut made: Vec<(String, Arc<Prepared>)> = Vec::new();
-        for Layer { method, settings, .. } in self.iter() {
-            let key = super::prepared::key(*method, settings, world.scene());
-            let known = made.iter().find(|(known, _)| *known == key).map(|(_, prepared)| prepared.clone());
+        let mut made: Vec<(Asked, Arc<Prepared>)> = Vec::new();
+        for layer in self.iter() {
+            let asked = layer.asked();
+            let known = made.iter().find(|(known, _)| *known == asked).map(|(_, prepared)| prepared.clone());
             let prepared = match known {
                 Some(prepared) => prepared,
-                None => Arc::new(store.prepare(&key, *method, world, settings, job)?),
+                None => {
+                    let Layer { method, settings, .. } = layer;
+                    let key = key(*method, settings, world.scene());
+                    Arc::new(store.prepare(&key, *method, world, settings, job)?)
+                }
             };
-            made.push((key, prepared));
+            made.push((asked, prepared));
         }
         Ok(made.into_iter().map(|(_, prepared)| prepared).collect())
+    }
+
+    /// Prepares and draws: adds `samples` to every pixel of a film. `None` where the processor cannot draw them all.
+    pub fn draw(
+        &self,
+        world: &World,
+        store: &Store,
+        view: &View,
+        (film, samples): (&mut Film, u32),
+        job: &Handle,
+    ) -> Result<Option<Pass>, MethodError> {
+        let prepared = self.prepare(store, world, job)?;
+        let drawing = Drawing::of_layers(world, self, &prepared);
+        Ok(drawing.map(|drawing| drawing.draw(view, film, samples, &Control::of_job(job))))
     }
 }

@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::prepared::{Prepared, Reads};
 use crate::job::Handle;
 use crate::param::{ParamError, ParamSpec, Settings};
-use crate::reference::{SurfacePoint, World};
+use crate::reference::{self, SurfacePoint, World};
 
 /// Name of a method in documents, on the command line and in tables, lower case with hyphens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -157,6 +157,13 @@ pub enum MethodError {
     /// The user ended it.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl dyn Method + '_ {
+    /// The processor draws it: point by point, or path by path.
+    pub fn is_on_processor(&self) -> bool {
+        self.points().is_some() || self.info().id.0 == reference::ID
+    }
 }
 
 impl fmt::Debug for dyn Method {

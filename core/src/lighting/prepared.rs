@@ -6,7 +6,7 @@ use glam::Vec3;
 use half::f16;
 use serde_json::json;
 
-use super::method::{Method, MethodError, MethodInfo};
+use super::method::{Method, MethodError, MethodId, MethodInfo};
 use crate::file::{Array, Container, Element, FileError, Kind};
 use crate::job::Handle;
 use crate::param::{Affects, Settings};
@@ -109,15 +109,27 @@ impl Prepared {
     }
 }
 
+/// What a preparation is made for, but for the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    method: MethodId,
+    settings: Vec<(&'static str, Option<String>)>,
+}
+
+impl Asked {
+    /// By a method with settings, of which those that affect it count.
+    pub fn by(method: &dyn Method, settings: &Settings) -> Asked {
+        let affecting = settings.iter().filter(|(spec, _)| spec.affects == Affects::Prepare);
+        let texts = affecting.map(|(spec, _)| (spec.key, settings.text(spec.key))).collect();
+        Asked { method: method.info().id, settings: texts }
+    }
+}
+
 /// Hash of all that a preparation depends on: the method with its revision, the settings that affect it, the parts of the
 /// scene that it reads.
 pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
-    let MethodInfo { id, reads, revision, .. } = method.info();
-    let settings: Vec<(&str, Option<String>)> = settings
-        .iter()
-        .filter(|(spec, _)| spec.affects == Affects::Prepare)
-        .map(|(spec, _)| (spec.key, settings.text(spec.key)))
-        .collect();
+    let MethodInfo { reads, revision, .. } = method.info();
+    let Asked { method: id, settings } = Asked::by(method, settings);
     let parts = match *reads {
         Reads::NOTHING => Vec::new(),
         reads => {

@@ -7,6 +7,33 @@ use glam::{Vec2, Vec3};
 use super::Environment;
 use crate::math::cube;
 
+/// The rotation of an environment about +y.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    sin: f32,
+    cos: f32,
+}
+
+impl Turn {
+    /// By radians, counter-clockwise.
+    pub fn by(rotation: f32) -> Turn {
+        let (sin, cos) = rotation.sin_cos();
+        Turn { sin, cos }
+    }
+
+    /// A direction of the world in the map's own frame.
+    pub fn to_own(self, world: Vec3) -> Vec3 {
+        let Turn { sin, cos } = self;
+        Vec3::new(cos * world.x - sin * world.z, world.y, sin * world.x + cos * world.z)
+    }
+
+    /// And back.
+    pub fn to_world(self, own: Vec3) -> Vec3 {
+        let Turn { sin, cos } = self;
+        Vec3::new(cos * own.x + sin * own.z, own.y, -sin * own.x + cos * own.z)
+    }
+}
+
 impl Environment {
     /// A map from its parts, unrotated, at strength 1. Rows from the top; `texels` should hold `width * height` colours,
     /// what is missing is black.
@@ -16,9 +43,7 @@ impl Environment {
 
     /// Where a world direction is seen, in [0, 1]^2 from the top left.
     pub fn uv_from_direction(&self, world: Vec3) -> Vec2 {
-        let (sin, cos) = self.rotation.sin_cos();
-        let d = Vec3::new(cos * world.x - sin * world.z, world.y, sin * world.x + cos * world.z);
-        cube::equirectangular(d)
+        cube::equirectangular(Turn::by(self.rotation).to_own(world))
     }
 
     /// The world direction that is seen at a point of the map.
@@ -26,8 +51,7 @@ impl Environment {
         let (sin_phi, cos_phi) = ((uv.x - 0.5) * TAU).sin_cos();
         let (sin_theta, cos_theta) = (uv.y * PI).sin_cos();
         let d = Vec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi);
-        let (sin, cos) = self.rotation.sin_cos();
-        Vec3::new(cos * d.x + sin * d.z, d.y, -sin * d.x + cos * d.z)
+        Turn::by(self.rotation).to_world(d)
     }
 
     /// Radiance from a world direction, strength included: bilinear, wrapping around, stopping at the poles.

@@ -1,7 +1,7 @@
 //! A scene as every renderer sees it: flat, validated, in metres, radians and linear Rec.709.
 
 mod camera;
-mod environment;
+pub(crate) mod environment;
 pub mod fingerprint;
 pub mod gallery;
 mod pick;

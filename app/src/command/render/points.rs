@@ -10,8 +10,8 @@ use burnish_core::document::Document;
 use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::classical::form_choice;
-use burnish_core::lighting::{Drawing, Layers, MethodError, MethodId, Store};
-use burnish_core::reference::{Control, Film, Options, Pass, View, World};
+use burnish_core::lighting::{Layers, MethodError, MethodId, Store};
+use burnish_core::reference::{Film, Options, Pass, View, World};
 use glam::UVec2;
 
 use super::reference::ReferenceArgs;
@@ -61,9 +61,7 @@ pub fn run(
     let drawn = interrupt::meanwhile(cancel, || {
         pool.install(|| {
             let world = World::new(&Arc::new(scene), options);
-            let prepared = layers.prepare(&store, &world, &job)?;
-            let drawing = Drawing::of_layers(&world, &layers, &prepared);
-            Ok(drawing.map(|drawing| drawing.draw(&view, &mut film, samples, &Control::of_job(&job))))
+            layers.draw(&world, &store, &view, (&mut film, samples), &job)
         })
     });
     match drawn.map_err(|error| method_failure(id, &error))? {

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::file::write_picture;
 use burnish_core::job::{Handle, Job};
-use burnish_core::lighting::{Drawing, Layers, MethodError, Store};
+use burnish_core::lighting::{Layers, MethodError, Store};
 use burnish_core::picture::Picture;
-use burnish_core::reference::{self, Control, Film, Options, Pass, World};
+use burnish_core::reference::{self, Film, Options, Pass, World};
 use burnish_render::{Gpu, Passes, Renderer, View};
 use eframe::egui;
 use glam::UVec2;
@@ -172,15 +172,14 @@ fn draw(
     (store, view): (&Store, &View),
     job: &Handle,
 ) -> Result<Option<Picture>, String> {
-    let prepared = match layers.prepare(store, world, job) {
-        Err(MethodError::Cancelled) => return Ok(None),
-        prepared => prepared.map_err(|e| e.to_string())?,
-    };
-    let drawing = Drawing::of_layers(world, layers, &prepared).ok_or("the method cannot draw on the processor")?;
     let mut film = Film::new(view.size);
     let view_of_film = reference::View { camera: view.camera.clone(), size: view.size, seed: 0 };
-    let pass = drawing.draw(&view_of_film, &mut film, view.jitter_frames, &Control::of_job(job));
-    Ok((pass == Pass::Whole).then(|| film.picture()))
+    match layers.draw(world, store, &view_of_film, (&mut film, view.jitter_frames), job) {
+        Ok(Some(Pass::Whole)) => Ok(Some(film.picture())),
+        Ok(Some(Pass::Cancelled)) | Err(MethodError::Cancelled) => Ok(None),
+        Ok(None) => Err("the method cannot draw on the processor".into()),
+        Err(error) => Err(error.to_string()),
+    }
 }
 
 fn write(picture: &Picture, path: &Path, tone: ToneMap, exposure_ev: f32) -> Result<String, String> {

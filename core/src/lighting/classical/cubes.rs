@@ -10,6 +10,7 @@ use crate::lighting::cube_map::{CubeMap, CubeMapBuilder, on_face};
 use crate::lighting::{MethodError, Prepared};
 use crate::math::cube;
 use crate::scene::Environment;
+use crate::scene::environment::Turn;
 
 /// Largest value stored in a cube.
 const STORED_MAX: f32 = 60_000.0;
@@ -171,8 +172,7 @@ pub struct PreparedMaps<'a> {
     wide_alpha: f32,
     /// From a texel to radiance.
     scale: f32,
-    /// Sine and cosine of the map's rotation.
-    turn: (f32, f32),
+    turn: Turn,
 }
 
 impl<'a> PreparedMaps<'a> {
@@ -189,14 +189,12 @@ impl<'a> PreparedMaps<'a> {
             sources: prepared.floats("sources"),
             wide_alpha: wide_alpha(width, shading_block(width)),
             scale: scale * environment.strength,
-            turn: environment.rotation.sin_cos(),
+            turn: Turn::by(environment.rotation),
         })
     }
 
     fn lookup(&self, map: &CubeMap<'_>, direction: Vec3, level: f32) -> Vec3 {
-        let (sin, cos) = self.turn;
-        let own = Vec3::new(cos * direction.x - sin * direction.z, direction.y, sin * direction.x + cos * direction.z);
-        self.scale * map.lookup(mirrored(own), level)
+        self.scale * map.lookup(mirrored(self.turn.to_own(direction)), level)
     }
 }
 
@@ -215,9 +213,7 @@ impl Maps for PreparedMaps<'_> {
 
     fn source(&self, index: usize) -> Source {
         let [d, power] = [6 * index, 6 * index + 3].map(|at| Vec3::from_slice(&self.sources[at..at + 3]));
-        let (sin, cos) = self.turn;
-        let direction = Vec3::new(cos * d.x + sin * d.z, d.y, -sin * d.x + cos * d.z);
-        Source { direction, power: self.scale * power }
+        Source { direction: self.turn.to_world(d), power: self.scale * power }
     }
 
     fn wide_alpha(&self) -> f32 {

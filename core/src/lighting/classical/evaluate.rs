@@ -131,7 +131,8 @@ pub fn prefilter(
 
 /// Light of the environment that the surface sends toward the viewer (unit vector, world space).
 ///
-/// `mean` says how the split sum finds the mean of the surface's curve; `base` and `coat_frame` are the frames of the base layer (x along the anisotropy axis) and of the coat.
+/// `mean` says how the split sum finds the mean of the surface's curve; `base` and `coat_frame` are the frames of the base
+/// layer (x along the anisotropy axis) and of the coat.
 #[allow(clippy::too_many_arguments, reason = "the argument list of the WGSL twin")]
 pub fn environment(
     maps: &impl Maps,

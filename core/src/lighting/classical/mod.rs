@@ -13,9 +13,9 @@ mod tests;
 
 use std::sync::LazyLock;
 
-use super::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use glam::Vec3;
 
+use super::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use crate::job::Handle;
 use crate::leaf::Leaf;
 use crate::material::preset::{FormChoice, Tolerance};

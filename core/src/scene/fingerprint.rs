@@ -44,21 +44,56 @@ impl fmt::Debug for Digest {
 impl Fingerprint {
     /// That of a scene. Takes about a second per gigabyte of meshes, images and environment, on one core.
     pub fn new(scene: &Scene) -> Fingerprint {
-        let Scene { name: _, meshes, instances, materials, images, lights, cameras: _, environment, subject: _ } =
-            scene;
+        // Taken apart, so that a new field cannot be forgotten.
+        let Scene {
+            name: _,
+            meshes: _,
+            instances: _,
+            materials: _,
+            images: _,
+            lights: _,
+            cameras: _,
+            environment: _,
+            subject: _,
+        } = scene;
         Fingerprint {
-            geometry: digest(|h| {
-                h.parts(meshes, |h, mesh| h.mesh(mesh));
-                h.list(instances, Sponge::instance);
-            }),
-            materials: digest(|h| {
-                h.list(materials, Sponge::material);
-                h.parts(images, |h, image| h.image(image));
-            }),
-            lights: digest(|h| h.list(lights, Sponge::light)),
-            environment: digest(|h| h.option(environment.as_deref(), Sponge::environment)),
+            geometry: geometry(scene),
+            materials: materials(scene),
+            lights: lights(scene),
+            environment: environment(scene),
         }
     }
+}
+
+/// The hash of meshes and instances.
+pub fn geometry(scene: &Scene) -> Digest {
+    digest(|h| {
+        h.parts(&scene.meshes, |h, mesh| h.mesh(mesh));
+        h.list(&scene.instances, Sponge::instance);
+    })
+}
+
+/// The hash of materials and images.
+pub fn materials(scene: &Scene) -> Digest {
+    digest(|h| {
+        h.list(&scene.materials, Sponge::material);
+        h.parts(&scene.images, |h, image| h.image(image));
+    })
+}
+
+/// The hash of the lights.
+pub fn lights(scene: &Scene) -> Digest {
+    digest(|h| h.list(&scene.lights, Sponge::light))
+}
+
+/// The hash of the environment.
+pub fn environment(scene: &Scene) -> Digest {
+    digest(|h| h.option(scene.environment.as_deref(), Sponge::environment))
+}
+
+/// The hash of the map of the environment, however it is turned and scaled.
+pub fn sky(scene: &Scene) -> Digest {
+    digest(|h| h.option(scene.environment.as_deref(), Sponge::map))
 }
 
 /// The hash of a point of view; its name is left out.
@@ -194,11 +229,16 @@ impl Sponge {
     }
 
     fn environment(&mut self, environment: &Environment) {
-        let Environment { name: _, width, height, texels, rotation, strength } = environment;
+        self.map(environment);
+        self.floats(&[environment.rotation, environment.strength]);
+    }
+
+    /// All but how it is turned and scaled.
+    fn map(&mut self, environment: &Environment) {
+        let Environment { name: _, width, height, texels, rotation: _, strength: _ } = environment;
         self.word(*width);
         self.word(*height);
         self.vectors(texels);
-        self.floats(&[*rotation, *strength]);
     }
 
     fn material(&mut self, material: &Material) {

@@ -202,6 +202,17 @@ fn names_and_cameras_do_not_count_and_copies_are_equal() {
 }
 
 #[test]
+fn the_map_counts_without_its_turn_and_scale() {
+    let mut turned = scene();
+    let map = Arc::make_mut(turned.environment.as_mut().unwrap());
+    (map.rotation, map.strength) = (map.rotation + 1.0, 2.0 * map.strength);
+    assert_eq!(sky(&turned), sky(&scene()));
+    assert_ne!(environment(&turned), environment(&scene()));
+    Arc::make_mut(turned.environment.as_mut().unwrap()).texels = vec![Vec3::splat(7.0); 2].into();
+    assert_ne!(sky(&turned), sky(&scene()));
+}
+
+#[test]
 fn cameras_differ_by_place_and_projection() {
     let base = Camera::look_at("a", Vec3::ONE, Vec3::ZERO, 0.5);
     let with = |projection| Camera { projection, ..base.clone() };

@@ -96,7 +96,11 @@ impl ViewportPanel {
         self.drop_preset(&response, context, &frame);
         // A click or a drop may have changed the scene: this frame shows it already.
         let shown = match view {
-            Some(_) => compare::ui(ui, &response, context, &frame),
+            Some(_) => {
+                // The tracer draws a side or the reference.
+                context.reference.draw_live(false);
+                compare::ui(ui, &response, context, &frame)
+            }
             None => single_ui(ui, rect, context, &frame),
         };
         self.overlay_ui(ui, &response, context, &frame, &shown);
@@ -285,13 +289,13 @@ fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Sh
     let scene = session.scene();
     let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
     let layers = session.layers();
-    let on_device = drawn_on_device(&layers);
+    let on_device = drawn_on_device(layers);
     reference.draw_live(!reference.is_on() && !on_device);
     if !reference.is_on() {
         // Until all is prepared, classical light stands in.
-        let prepared = if on_device { None } else { preparations.prepared(&layers) };
+        let prepared = if on_device { None } else { preparations.prepared(layers) };
         let Some(prepared) = prepared else { return (stage.draw(scene, frame), glam::Vec2::ONE) };
-        subject = subject.by_points(layers, prepared);
+        subject = subject.by_points(layers.clone(), prepared);
     }
     if let Some(look) = reference.look(subject, ctx) {
         return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());

@@ -113,7 +113,8 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     }
     for object in &document.objects {
         let name = object.name.as_deref().unwrap_or(&object.key);
-        let words = format!("{name}, {}", if object.hidden { "hidden" } else { "visible" });
+        let moved = if object.transform.is_some() { ", moved" } else { "" };
+        let words = format!("{name}, {}{moved}", if object.hidden { "hidden" } else { "visible" });
         all.insert(Place::Object(object.key.clone()), (serde_json::to_value(object).ok(), words));
     }
     let environment = &document.environment;

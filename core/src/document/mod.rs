@@ -15,6 +15,7 @@ mod open;
 mod paths;
 mod resolve;
 mod snapshot;
+mod transform;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -41,6 +42,7 @@ pub use open::{
 pub use paths::{absolute, relative};
 pub use resolve::{Curves, Resolved, resolve};
 pub use snapshot::{CompareEntry, Side, SideEntry, Snapshot};
+pub use transform::{TransformEntry, center_of};
 
 /// Scene of a new document.
 pub const DEFAULT_SCENE: &str = "gallery:workbench";
@@ -59,7 +61,7 @@ pub struct Document {
     /// Objects that do not have the material of the model.
     #[serde(default)]
     pub assignments: Vec<Assignment>,
-    /// Objects that were renamed or hidden.
+    /// Objects that were renamed, hidden or moved.
     #[serde(default)]
     pub objects: Vec<ObjectEntry>,
     /// Metals in use that do not come with the program.
@@ -158,6 +160,9 @@ pub struct ObjectEntry {
     /// Not drawn.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub hidden: bool,
+    /// Where it was put instead of its place in the model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transform: Option<TransformEntry>,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,

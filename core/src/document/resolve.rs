@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 use super::{
-    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, material_keys, object_keys, placeholder,
-    role_key,
+    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, center_of, material_keys, object_keys,
+    placeholder, role_key,
 };
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
@@ -273,7 +273,8 @@ fn place_objects(
         .filter_map(|a| Some((a.object.as_str(), *by_name.get(a.material.as_str())?)))
         .collect();
     let objects: BTreeMap<&str, _> = document.objects.iter().map(|entry| (entry.key.as_str(), entry)).collect();
-    for (instance, key) in scene.instances.iter_mut().zip(keys) {
+    let Scene { instances, meshes, .. } = scene;
+    for (instance, key) in instances.iter_mut().zip(keys) {
         let own = of_model.get(instance.material).copied().flatten();
         let material = assigned.get(key.as_str()).copied().or(own);
         instance.material = material.unwrap_or_else(|| {
@@ -283,6 +284,10 @@ fn place_objects(
         });
         if let Some(entry) = objects.get(key.as_str()) {
             instance.visible = !entry.hidden;
+            if let Some(transform) = &entry.transform {
+                let center = center_of(instance, &meshes[instance.mesh]);
+                instance.world_from_local = transform.place(instance.world_from_local, center);
+            }
             if let Some(name) = &entry.name {
                 instance.name = name.clone();
             }

@@ -1,5 +1,6 @@
 //! Lighting methods, one folder each.
 
+pub mod area;
 pub mod classical;
 pub mod cube_map;
 pub mod drawing;

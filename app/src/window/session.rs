@@ -216,6 +216,7 @@ impl Session {
             && before.environment == now.environment
             && before.assignments == now.assignments
             && before.objects == now.objects
+            && before.lights == now.lights
             && before.presets == now.presets
             && before.lighting.method == now.lighting.method
             && before.lighting.settings == now.lighting.settings

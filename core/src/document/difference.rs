@@ -20,6 +20,8 @@ pub enum Place {
     Assignment(String),
     /// Name and visibility of an object, by its key.
     Object(String),
+    /// A light, by its name.
+    Light(String),
     /// The HDRI.
     Map,
     /// How far the environment is turned.
@@ -117,6 +119,11 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
         let words = format!("{name}, {}{moved}", if object.hidden { "hidden" } else { "visible" });
         all.insert(Place::Object(object.key.clone()), (serde_json::to_value(object).ok(), words));
     }
+    for light in document.lights.iter().flatten() {
+        let state = if light.muted { ", muted" } else { "" };
+        let words = format!("{} {} {}{state}", light.shape.title(), digits(light.power), light.unit().symbol());
+        all.insert(Place::Light(light.name.clone()), (serde_json::to_value(light).ok(), words));
+    }
     let environment = &document.environment;
     if let Some(source) = &environment.source {
         all.insert(Place::Map, (Some(Value::from(source.as_str())), file_name(source)));
@@ -196,6 +203,8 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
         Place::Override(_) => "as the scene".into(),
+        Place::Light(_) if document.lights.is_some() => "is not there".into(),
+        Place::Light(_) => "as the model".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
         Place::Rotation | Place::Strength | Place::Method | Place::Camera | Place::Exposure | Place::Tone => {
@@ -208,6 +217,7 @@ fn group(place: &Place) -> String {
     match place {
         Place::Material(name, _) => format!("Material {name}"),
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
+        Place::Light(_) => "Lights".into(),
         Place::Map | Place::Rotation | Place::Strength => "Environment".into(),
         Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
         Place::Reference(_) => "Reference".into(),
@@ -225,6 +235,7 @@ fn label(place: &Place) -> String {
         Place::Material(_, Part::Texture(role)) => format!("Texture {role}"),
         Place::Assignment(object) => format!("Material of {object}"),
         Place::Object(key) => format!("Object {key}"),
+        Place::Light(name) => format!("Light {name}"),
         Place::Map => "HDRI".into(),
         Place::Rotation => "Rotation".into(),
         Place::Strength => "Strength".into(),
@@ -311,6 +322,7 @@ impl Document {
                 self.objects.retain(|entry| entry.key != *key);
                 self.objects.extend(new);
             }
+            Place::Light(name) => self.copy_light(name, from),
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,
@@ -324,6 +336,20 @@ impl Document {
             Place::Camera => self.view.camera = from.view.camera.clone(),
             Place::Exposure => self.view.exposure_ev = from.view.exposure_ev,
             Place::Tone => self.view.tone.clone_from(&from.view.tone),
+        }
+    }
+
+    /// Takes over a light, all of them where only one of the states has lights of its own.
+    fn copy_light(&mut self, name: &str, from: &Document) {
+        let (Some(own), Some(theirs)) = (&mut self.lights, &from.lights) else {
+            return self.lights.clone_from(&from.lights);
+        };
+        let new = theirs.iter().find(|light| light.name == name);
+        match (own.iter().position(|light| light.name == name), new) {
+            (Some(place), Some(new)) => own[place] = new.clone(),
+            (Some(place), None) => _ = own.remove(place),
+            (None, Some(new)) => own.push(new.clone()),
+            (None, None) => {}
         }
     }
 

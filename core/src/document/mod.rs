@@ -11,6 +11,9 @@ mod edit;
 mod format;
 mod history;
 mod keys;
+mod light;
+mod lighting_preset;
+mod lights;
 mod open;
 mod paths;
 mod resolve;
@@ -36,6 +39,9 @@ pub use edit::Assigned;
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
+pub use light::{LightEntry, Shape};
+pub use lighting_preset::{LightingPreset, PresetError};
+pub use lights::{entries_of, shining};
 pub use open::{
     Missing, MissingKind, Opened, Sources, is_document, load_image, load_map, load_model, open, placeholder, reload,
 };
@@ -70,6 +76,9 @@ pub struct Document {
     /// Light from infinitely far away.
     #[serde(default)]
     pub environment: EnvironmentEntry,
+    /// Lights other than the environment; those of the model when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lights: Option<Vec<LightEntry>>,
     /// Saved points of view.
     #[serde(default)]
     pub cameras: Vec<CameraEntry>,

@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock};
 
 use super::{
     Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, center_of, material_keys, object_keys,
-    placeholder, role_key,
+    placeholder, role_key, shining,
 };
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
@@ -143,6 +143,9 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
     let object_keys = object_keys(&model);
     place_objects(&mut scene, &object_keys, &model_keys, document, &mut materials);
     scene.materials = materials;
+    if let Some(lights) = &document.lights {
+        scene.lights = shining(lights, &object_keys);
+    }
     if !document.subject.is_empty() {
         let chosen = |key: &String| document.subject.contains(key);
         scene.subject = (0..object_keys.len()).filter(|i| chosen(&object_keys[*i])).collect();

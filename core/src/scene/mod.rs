@@ -5,6 +5,7 @@ pub(crate) mod environment;
 pub mod fingerprint;
 pub mod gallery;
 mod light;
+pub mod photometry;
 mod pick;
 mod validate;
 

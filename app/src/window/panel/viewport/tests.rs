@@ -195,7 +195,7 @@ fn a_preset_that_is_dropped_goes_on_the_material_under_it() {
 fn a_pick_selects_shift_adds_and_nothing_deselects() {
     let mut session = session();
     let keys = session.resolved().object_keys.clone();
-    let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO });
+    let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO, normal: glam::Vec3::Z });
     select(&mut session, at(0), false);
     assert_eq!(session.selection.objects, keys[..1]);
     assert_eq!(session.selection.material, session.scene().instances[0].material);

@@ -122,14 +122,14 @@ fn view_data(
     };
     let clip_from_world = clip_from_world(camera, size, jitter);
     let Resident { scene, maps, shadows, .. } = resident;
-    let (rotation, strength) = scene.environment.as_ref().map_or((0.0, 1.0), |e| (e.rotation, e.strength));
+    let (rotation, scale) = scene.environment.as_ref().map_or((0.0, Vec3::ONE), |e| (e.rotation, e.scale()));
     ViewData {
         clip_from_world,
         world_from_clip: clip_from_world.inverse(),
         viewer: viewer(camera),
         environment_cos: rotation.cos(),
         environment_sin: rotation.sin(),
-        environment_scale: maps.scale * strength,
+        environment_scale: maps.scale * scale,
         environment_mips: maps.radiance.mip_level_count() as f32,
         size,
         light_count: shadows.light_count,

@@ -133,7 +133,7 @@ pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
     let parts = match *reads {
         Reads::NOTHING => Vec::new(),
         reads => {
-            let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(scene);
+            let Fingerprint { geometry, materials, lights, environment, background: _ } = Fingerprint::new(scene);
             let digests = [geometry, materials, lights, environment];
             let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
             read.map(|((name, _), digest)| (name, digest.to_string())).collect()

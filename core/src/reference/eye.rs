@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
+use super::backdrop;
 use super::bsdf::Bsdf;
 use super::lamps;
 use super::lights::{End, Kind};
@@ -60,10 +61,10 @@ impl<'a> Eye<'a> {
         self.sampler.next4()
     }
 
-    /// The sky along the ray.
+    /// The background along the ray.
     pub fn miss(&self) -> PathSample {
-        let radiance = self.world.lights().sky(self.ray.direction);
-        PathSample { radiance, clamped: Vec3::ZERO, first: None, rays: 1 }
+        let seen = backdrop::look(self.world, &self.ray, &mut self.sampler.clone());
+        PathSample { radiance: seen.radiance - seen.shadow, clamped: Vec3::ZERO, first: None, rays: 1 + seen.rays }
     }
 }
 

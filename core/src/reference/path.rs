@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::backdrop;
 use super::bsdf::Bsdf;
 use super::lights::{End, Kind, LightSample, Rates};
 use super::point::Point;
@@ -66,7 +67,11 @@ impl Path<'_> {
             let salt = self.sampler.salt().wrapping_add(self.surfaces);
             self.rays += 1;
             let Some(hit) = world.closest(&ray, sight, salt) else {
-                self.escape(&drawn, ray.direction);
+                if self.surfaces == 0 {
+                    self.background(&ray)
+                } else {
+                    self.escape(&drawn, ray.direction)
+                }
                 return first;
             };
             let to_viewer = -ray.direction;
@@ -103,6 +108,16 @@ impl Path<'_> {
             drawn = Drawn { position: point.position, pdf: sample.pdf, rates };
             let origin = offset(point.position, point.rounding, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
+        }
+    }
+
+    /// Adds what the eye sees behind everything.
+    fn background(&mut self, ray: &Ray) {
+        let seen = backdrop::look(self.world, ray, &mut self.sampler);
+        self.rays += seen.rays;
+        self.add(self.waves.of_rgb(seen.radiance));
+        if seen.shadow != Vec3::ZERO {
+            self.add(-self.waves.of_rgb(seen.shadow));
         }
     }
 

@@ -9,7 +9,9 @@ use blake3::{Hash, Hasher};
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
-use super::{Camera, Environment, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels};
+use super::{
+    Background, Camera, Environment, Ground, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels,
+};
 use crate::material::{AlphaMode, Material, Reflectance, Sampler, TextureRef};
 
 /// Hashes of the parts of a scene, so that it can be told which of two differ.
@@ -23,6 +25,8 @@ pub struct Fingerprint {
     pub lights: Digest,
     /// The environment.
     pub environment: Digest,
+    /// What only the eye sees of it; `None` where it sees the environment as it is.
+    pub background: Option<Digest>,
 }
 
 /// 256 bits, written as hexadecimal digits.
@@ -44,8 +48,18 @@ impl fmt::Debug for Digest {
 impl Fingerprint {
     /// That of a scene. Takes about a second per gigabyte of meshes, images and environment, on one core.
     pub fn new(scene: &Scene) -> Fingerprint {
-        let Scene { name: _, meshes, instances, materials, images, lights, cameras: _, environment, subject: _ } =
-            scene;
+        let Scene {
+            name: _,
+            meshes,
+            instances,
+            materials,
+            images,
+            lights,
+            cameras: _,
+            environment,
+            background,
+            subject: _,
+        } = scene;
         Fingerprint {
             geometry: digest(|h| {
                 h.parts(meshes, |h, mesh| h.mesh(mesh));
@@ -57,6 +71,7 @@ impl Fingerprint {
             }),
             lights: digest(|h| h.list(lights, Sponge::light)),
             environment: digest(|h| h.option(environment.as_deref(), Sponge::environment)),
+            background: (!background.is_plain()).then(|| digest(|h| h.background(background))),
         }
     }
 }
@@ -194,11 +209,26 @@ impl Sponge {
     }
 
     fn environment(&mut self, environment: &Environment) {
-        let Environment { name: _, width, height, texels, rotation, strength } = environment;
+        let Environment { name: _, width, height, texels, rotation, strength, tint } = environment;
         self.word(*width);
         self.word(*height);
         self.vectors(texels);
         self.floats(&[*rotation, *strength]);
+        // Hashes of maps without a tint are those of the time before there were tints.
+        if *tint != Vec3::ONE {
+            self.color(*tint);
+        }
+    }
+
+    fn background(&mut self, background: &Background) {
+        let Background { map, ground } = background;
+        self.option(map.as_deref(), Sponge::environment);
+        self.option(ground.as_ref(), |h, ground| {
+            let Ground { middle, height, radius, shadows } = ground;
+            h.color(*middle);
+            h.floats(&[*height, *radius]);
+            h.flag(*shadows);
+        });
     }
 
     fn material(&mut self, material: &Material) {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use burnish_core::document::Missing;
 use burnish_core::material::{AlphaMode, Material, Reflectance, TextureRole};
-use burnish_core::scene::{Camera, Light, LightKind, Projection, Scene, Texels};
+use burnish_core::scene::{Camera, Light, Projection, Scene, Texels};
 use burnish_core::surface::micro_normal;
 use serde::Serialize;
 
@@ -282,12 +282,7 @@ impl MaterialInfo {
 
 impl LightInfo {
     fn of(light: &Light) -> LightInfo {
-        let kind = match light.kind {
-            LightKind::Point => "point",
-            LightKind::Spot { .. } => "spot",
-            LightKind::Directional => "directional",
-        };
-        LightInfo { name: light.name.clone(), kind, intensity: light.intensity.to_array() }
+        LightInfo { name: light.name.clone(), kind: light.kind.label(), intensity: light.intensity.to_array() }
     }
 }
 

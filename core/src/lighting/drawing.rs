@@ -165,6 +165,7 @@ mod tests {
             intensity: Vec3::splat(9.0),
             range: f32::INFINITY,
             kind: LightKind::Point,
+            ..Default::default()
         });
         let world = World::new(&Arc::new(scene), Options { bounces: 1, ..Options::default() });
         let camera = world.scene().cameras[0].clone();

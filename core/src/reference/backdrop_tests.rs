@@ -36,14 +36,7 @@ fn even(radiance: f32) -> Environment {
 }
 
 fn sun(intensity: f32, direction: Vec3) -> Light {
-    Light {
-        name: "sun".into(),
-        position: Vec3::ZERO,
-        direction,
-        intensity: Vec3::splat(intensity),
-        range: f32::INFINITY,
-        kind: LightKind::Directional,
-    }
+    Light { direction, intensity: Vec3::splat(intensity), kind: LightKind::PARALLEL, ..Light::default() }
 }
 
 /// The share of light that is left at a point of the ground, seen from beside the plate, and the mean of `samples`.

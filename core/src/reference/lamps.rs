@@ -20,7 +20,7 @@ pub(super) struct LampLight {
 
 /// What a lamp sends to a point, shadows aside. KHR_lights_punctual, "Range property" and "Inner and outer cone angles".
 pub(super) fn at(light: &Light, position: Vec3) -> LampLight {
-    if light.kind == LightKind::Directional {
+    if let LightKind::Directional { .. } = light.kind {
         return LampLight { direction: -light.direction, distance: f32::INFINITY, irradiance: light.intensity };
     }
     let toward = light.position - position;
@@ -73,8 +73,8 @@ mod tests {
             position: Vec3::new(x, 2.0, 0.0),
             direction: Vec3::NEG_Y,
             intensity: Vec3::splat(intensity),
-            range: f32::INFINITY,
             kind,
+            ..Light::default()
         }
     }
 
@@ -87,7 +87,7 @@ mod tests {
         let spot = lamp(LightKind::Spot { inner_angle: 0.2, outer_angle: 0.4 }, 0.0, 8.0);
         assert!((at(&spot, Vec3::ZERO).irradiance.x - 2.0).abs() < 1e-6);
         assert_eq!(at(&spot, Vec3::new(2.0, 0.0, 0.0)).irradiance.x, 0.0);
-        let sun = lamp(LightKind::Directional, 0.0, 3.0);
+        let sun = lamp(LightKind::PARALLEL, 0.0, 3.0);
         let light = at(&sun, Vec3::splat(9.0));
         assert_eq!((light.direction, light.irradiance.x, light.distance), (Vec3::Y, 3.0, f32::INFINITY));
     }

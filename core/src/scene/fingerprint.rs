@@ -195,7 +195,7 @@ impl Sponge {
     }
 
     fn light(&mut self, light: &Light) {
-        let Light { name: _, position, direction, intensity, range, kind } = light;
+        let Light { name: _, position, direction, intensity, range, kind, camera, reflections, shadows, unlit } = light;
         [position, direction, intensity].into_iter().for_each(|v| self.color(*v));
         self.floats(&[*range]);
         match *kind {
@@ -204,8 +204,22 @@ impl Sponge {
                 self.word(1);
                 self.floats(&[inner_angle, outer_angle]);
             }
-            LightKind::Directional => self.word(2),
+            LightKind::Directional { angular_radius } => {
+                self.word(2);
+                self.floats(&[angular_radius]);
+            }
+            LightKind::Rectangle { across, size } => {
+                self.word(3);
+                self.color(across);
+                self.floats(&size.to_array());
+            }
+            LightKind::Sphere { radius } => {
+                self.word(4);
+                self.floats(&[radius]);
+            }
         }
+        [camera, reflections, shadows].into_iter().for_each(|switch| self.flag(*switch));
+        self.list(unlit, |h, instance| h.count(*instance));
     }
 
     fn environment(&mut self, environment: &Environment) {

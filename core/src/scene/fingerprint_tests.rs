@@ -30,6 +30,7 @@ fn scene() -> Scene {
         intensity: Vec3::ONE,
         range: f32::INFINITY,
         kind: LightKind::Spot { inner_angle: 0.1, outer_angle: 0.2 },
+        ..Light::default()
     };
     Scene {
         name: "scene".into(),
@@ -115,7 +116,15 @@ fn changes() -> Vec<Change> {
     light(|l| l.range = 0.5);
     light(|l| l.kind = LightKind::Spot { inner_angle: 0.1, outer_angle: 0.3 });
     light(|l| l.kind = LightKind::Point);
-    light(|l| l.kind = LightKind::Directional);
+    light(|l| l.kind = LightKind::PARALLEL);
+    light(|l| l.kind = LightKind::Directional { angular_radius: 0.1 });
+    light(|l| l.kind = LightKind::Sphere { radius: 0.1 });
+    light(|l| l.kind = LightKind::Rectangle { across: Vec3::X, size: Vec2::ONE });
+    light(|l| l.kind = LightKind::Rectangle { across: Vec3::X, size: Vec2::splat(0.5) });
+    light(|l| l.camera = true);
+    light(|l| l.reflections = false);
+    light(|l| l.shadows = false);
+    light(|l| l.unlit = vec![0]);
     let mut sky = |f: fn(&mut Environment)| {
         let change = move |s: &mut Scene| s.environment.iter_mut().for_each(|e| f(Arc::make_mut(e)));
         list.push(("environment", Box::new(change)));
@@ -238,12 +247,14 @@ fn cameras_differ_by_place_and_projection() {
 
 #[test]
 fn the_hash_is_the_same_on_every_machine() {
-    // Of one light, byte by byte as documented: count, three vectors, range, kind, two angles.
+    // Of one light, byte by byte as documented: count, three vectors, range, kind, two angles, switches, none unlit.
     let mut bytes = 1_u64.to_le_bytes().to_vec();
     for v in [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0, f32::INFINITY] {
         bytes.extend(v.to_le_bytes());
     }
     bytes.extend(1_u32.to_le_bytes());
     bytes.extend([0.1_f32, 0.2].map(f32::to_le_bytes).concat());
+    bytes.extend([0_u32, 1, 1].map(u32::to_le_bytes).concat());
+    bytes.extend(0_u64.to_le_bytes());
     assert_eq!(Fingerprint::new(&scene()).lights.to_string(), blake3::hash(&bytes).to_hex().to_string());
 }

@@ -4,6 +4,7 @@ mod camera;
 pub mod environment;
 pub mod fingerprint;
 pub mod gallery;
+mod light;
 mod pick;
 mod validate;
 
@@ -14,6 +15,7 @@ use glam::{Affine3A, Vec2, Vec3, Vec4};
 use crate::material::Material;
 
 pub use environment::{Background, Ground};
+pub use light::{Light, LightKind};
 pub use pick::{Picked, Ray};
 pub use validate::Fault;
 
@@ -32,7 +34,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Decoded images, shared by the textures of the materials.
     pub images: Vec<Arc<Image>>,
-    /// Punctual lights.
+    /// Lights other than the environment and glowing materials.
     pub lights: Vec<Light>,
     /// Cameras of the source.
     pub cameras: Vec<Camera>,
@@ -99,39 +101,6 @@ pub enum Texels {
     Unorm8(Vec<u8>),
     /// 16 bits a channel.
     Unorm16(Vec<u16>),
-}
-
-/// A punctual light (KHR_lights_punctual).
-#[derive(Clone, Debug)]
-pub struct Light {
-    /// Name for people.
-    pub name: String,
-    /// World position in metres; unused by directional lights.
-    pub position: Vec3,
-    /// Unit direction in which the light shines; unused by point lights.
-    pub direction: Vec3,
-    /// Linear Rec.709 intensity: cd (point, spot) or lx (directional) times colour. One nit is one unit of radiance.
-    pub intensity: Vec3,
-    /// Distance in metres at which the light is cut off smoothly; infinite when absent.
-    pub range: f32,
-    /// What kind of light.
-    pub kind: LightKind,
-}
-
-/// The kinds of [`Light`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightKind {
-    /// Shines in all directions.
-    Point,
-    /// A cone; half angles in radians, `0 <= inner < outer <= pi/2`.
-    Spot {
-        /// Full strength inside.
-        inner_angle: f32,
-        /// Dark outside.
-        outer_angle: f32,
-    },
-    /// Parallel light from infinitely far away.
-    Directional,
 }
 
 /// A view of the scene: looks along local -z with +y up, as in glTF.

@@ -1,5 +1,7 @@
 //! What every renderer may rely on in a [`Scene`], checked.
 
+use std::f32::consts::FRAC_PI_2;
+
 use glam::{Vec2, Vec3, Vec4};
 
 use super::{Environment, Image, Instance, Light, LightKind, Mesh, Scene, Texels};
@@ -36,7 +38,7 @@ impl Scene {
             check_image(image, &mut faults.at(format!("image {i} '{}'", image.name)));
         }
         for (i, light) in self.lights.iter().enumerate() {
-            check_light(light, &mut faults.at(format!("light {i} '{}'", light.name)));
+            check_light(self, light, &mut faults.at(format!("light {i} '{}'", light.name)));
         }
         for (i, camera) in self.cameras.iter().enumerate() {
             let finite = camera.world_from_view.is_finite();
@@ -136,16 +138,34 @@ fn check_image(image: &Image, at: &mut At<'_>) {
     at.unless(numbers > 0 && stored as u64 == numbers, "the texels do not fill the size");
 }
 
-fn check_light(light: &Light, at: &mut At<'_>) {
+fn check_light(scene: &Scene, light: &Light, at: &mut At<'_>) {
     at.unless(light.position.is_finite(), "the position is not finite");
-    at.unless(light.kind == LightKind::Point || unit(light.direction), "the direction is not a unit vector");
+    let aimless = matches!(light.kind, LightKind::Point | LightKind::Sphere { .. });
+    at.unless(aimless || unit(light.direction), "the direction is not a unit vector");
     let intensity = light.intensity;
     at.unless(intensity.is_finite() && intensity.min_element() >= 0.0, "the intensity is negative or not finite");
     at.unless(light.range > 0.0, "the range is not positive");
-    if let LightKind::Spot { inner_angle, outer_angle } = light.kind {
-        let sound = 0.0 <= inner_angle && inner_angle < outer_angle && outer_angle <= std::f32::consts::FRAC_PI_2;
-        at.unless(sound, "the cone angles are not 0 <= inner < outer <= pi/2");
+    match light.kind {
+        LightKind::Point => {}
+        LightKind::Spot { inner_angle, outer_angle } => {
+            let sound = 0.0 <= inner_angle && inner_angle < outer_angle && outer_angle <= FRAC_PI_2;
+            at.unless(sound, "the cone angles are not 0 <= inner < outer <= pi/2");
+        }
+        LightKind::Directional { angular_radius } => {
+            at.unless((0.0..=FRAC_PI_2).contains(&angular_radius), "the angular radius is not 0 to pi/2");
+        }
+        LightKind::Rectangle { across, size } => {
+            let square = unit(across) && across.dot(light.direction).abs() <= UNIT_TOLERANCE;
+            at.unless(square, "the side across is not a unit vector at right angles to the direction");
+            at.unless(size.is_finite() && size.min_element() >= 0.0, "the size is negative or not finite");
+        }
+        LightKind::Sphere { radius } => {
+            at.unless(radius.is_finite() && radius >= 0.0, "the radius is negative or not finite");
+        }
     }
+    at.unless(light.unlit.is_sorted_by(|a, b| a < b), "the instances that it does not light are not ascending");
+    let known = light.unlit.iter().all(|i| *i < scene.instances.len());
+    at.unless(known, "an instance that it does not light does not exist");
 }
 
 fn check_environment(environment: &Environment, at: &mut At<'_>) {
@@ -185,6 +205,27 @@ mod tests {
     #[test]
     fn a_sound_triangle_passes() {
         assert_eq!(triangle().validate(), Ok(()));
+    }
+
+    #[test]
+    fn lights_without_size_or_power_are_sound_and_crooked_ones_are_not() {
+        let with = |edit: fn(&mut Light)| {
+            let mut light = Light::default();
+            edit(&mut light);
+            Scene { lights: vec![light], ..triangle() }.validate().map_err(|faults| faults.len())
+        };
+        let rectangle = |across, size| LightKind::Rectangle { across, size };
+        assert_eq!(with(|l| l.kind = LightKind::Sphere { radius: 0.0 }), Ok(()));
+        assert_eq!(with(|l| l.intensity = Vec3::ZERO), Ok(()));
+        assert_eq!(with(|l| l.unlit = vec![0]), Ok(()));
+        let narrow = rectangle(Vec3::X, Vec2::new(1.0, 0.0));
+        assert_eq!(Scene { lights: vec![Light { kind: narrow, ..Light::default() }], ..triangle() }.validate(), Ok(()));
+        assert_eq!(with(|l| l.kind = LightKind::Sphere { radius: f32::NAN }), Err(1));
+        assert_eq!(with(|l| l.kind = LightKind::Directional { angular_radius: -0.1 }), Err(1));
+        assert_eq!(with(|l| l.kind = LightKind::Rectangle { across: Vec3::Z, size: Vec2::ONE }), Err(1));
+        assert_eq!(with(|l| l.kind = LightKind::Rectangle { across: Vec3::X, size: Vec2::NEG_ONE }), Err(1));
+        assert_eq!(with(|l| l.unlit = vec![1]), Err(1));
+        assert_eq!(with(|l| l.unlit = vec![0, 0]), Err(1));
     }
 
     #[test]

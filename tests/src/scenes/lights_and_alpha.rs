@@ -25,7 +25,7 @@ pub fn lights_and_alpha() -> Scene {
     stage.light(LightKind::Point, Vec3::new(-0.75, 0.55, 0.5), Vec3::NEG_Y, Vec3::new(1.2, 0.35, 0.3));
     let spot = LightKind::Spot { inner_angle: 0.3, outer_angle: 0.5 };
     stage.light(spot, Vec3::new(0.1, 1.4, 0.3), Vec3::new(-0.05, -1.0, -0.25), Vec3::new(1.2, 3.5, 1.4));
-    stage.light(LightKind::Directional, Vec3::ZERO, Vec3::new(-0.8, -0.7, -0.25), Vec3::new(0.5, 0.7, 2.2));
+    stage.light(LightKind::PARALLEL, Vec3::ZERO, Vec3::new(-0.8, -0.7, -0.25), Vec3::new(0.5, 0.7, 2.2));
     stage.finish_towards(Vec3::new(0.0, 0.75, 1.6), Vec3::new(0.0, 0.1, 0.0), 0.42)
 }
 

@@ -64,12 +64,12 @@ impl Stage {
     pub fn light(&mut self, kind: LightKind, position: Vec3, direction: Vec3, intensity: Vec3) {
         let name = format!("light {}", self.scene.lights.len());
         let direction = direction.normalize();
-        self.scene.lights.push(Light { name, position, direction, intensity, range: f32::INFINITY, kind });
+        self.scene.lights.push(Light { name, position, direction, intensity, kind, ..Light::default() });
     }
 
     /// Adds white parallel light, in lux.
     pub fn sun(&mut self, direction: Vec3, illuminance: f32) {
-        self.light(LightKind::Directional, Vec3::ZERO, direction, Vec3::splat(illuminance));
+        self.light(LightKind::PARALLEL, Vec3::ZERO, direction, Vec3::splat(illuminance));
     }
 
     /// The scene, seen from `eye` towards the origin; `yfov` in radians.

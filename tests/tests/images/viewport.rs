@@ -192,7 +192,7 @@ const CHANGES: &[Change] = &[
     ("everything is removed", |s| s.instances.clear()),
     ("lights move", |s| s.lights.iter_mut().for_each(|l| l.position += Vec3::new(0.3, 0.0, 0.1))),
     ("lights dim", |s| s.lights.iter_mut().for_each(|l| l.intensity *= 0.3)),
-    ("a light becomes another kind", |s| s.lights[0].kind = LightKind::Directional),
+    ("a light becomes another kind", |s| s.lights[0].kind = LightKind::PARALLEL),
     ("lights go out", |s| s.lights.clear()),
     ("another environment", |s| s.environment = Some(Arc::new(sky(Vec3::new(2.0, 0.5, 0.1))))),
     ("a turned and stronger environment", |s| {
@@ -317,6 +317,7 @@ fn hidden() {
         intensity: Vec3::splat(50.0),
         range: f32::INFINITY,
         kind: LightKind::Point,
+        ..Default::default()
     });
     scene.materials[0] = Material { double_sided: true, ..Material::default() };
     let shown = Arc::new(scene);

@@ -4,6 +4,7 @@
 //! KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_specular, KHR_materials_unlit, KHR_texture_transform.
 
 mod buffer;
+mod light;
 mod material;
 #[cfg(test)]
 mod tests;
@@ -15,7 +16,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Loss, Report};
 use crate::file::FileError;
-use crate::scene::{Camera, Light, LightKind, Projection, Scene};
+use crate::scene::{Camera, Projection, Scene};
 use buffer::Buffer;
 use material::is_opaque_metal;
 
@@ -108,7 +109,8 @@ impl Writer<'_> {
             let mut node = node(&light.name, &Affine3A::from_mat3_translation(facing(light.direction), light.position));
             node.insert("extensions".into(), json!({ "KHR_lights_punctual": { "light": list.len() } }));
             self.nodes.push(node.into());
-            list.push(punctual(light));
+            let element = format!("light {} '{}'", list.len(), light.name);
+            list.push(light::punctual(light, &element, &mut self.report));
         }
         list
     }
@@ -180,26 +182,6 @@ fn facing(direction: Vec3) -> Mat3 {
     let z = -direction.try_normalize().unwrap_or(Vec3::NEG_Z);
     let x = z.any_orthonormal_vector();
     Mat3::from_cols(x, z.cross(x), z)
-}
-
-fn punctual(light: &Light) -> Value {
-    // Colours beyond 1 are allowed, but not what people expect.
-    let intensity = light.intensity.max_element();
-    let color = if intensity > 0.0 { light.intensity / intensity } else { Vec3::ONE };
-    let mut json = json!({ "name": light.name, "color": color.to_array(), "intensity": intensity });
-    let kind = match light.kind {
-        LightKind::Point => "point",
-        LightKind::Directional => "directional",
-        LightKind::Spot { inner_angle, outer_angle } => {
-            json["spot"] = json!({ "innerConeAngle": inner_angle, "outerConeAngle": outer_angle });
-            "spot"
-        }
-    };
-    json["type"] = kind.into();
-    if light.range.is_finite() && light.kind != LightKind::Directional {
-        json["range"] = light.range.into();
-    }
-    json
 }
 
 fn projection(camera: &Camera) -> Value {

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::*;
 use crate::import::{FolderResolver, ImportOptions, Imported, scene_from_bytes};
 use crate::material::{Material, Reflectance};
-use crate::scene::{Texels, gallery};
+use crate::scene::{Light, LightKind, Texels, gallery};
 
 fn read_back(glb: &[u8]) -> Imported {
     let folder = FolderResolver::beside(Path::new("./scene.glb")).unwrap();
@@ -111,6 +111,53 @@ fn chunks_and_views_are_aligned_and_only_what_is_used_is_declared() {
     }
     assert!(text.contains("KHR_materials_clearcoat") && used.contains(&"KHR_materials_clearcoat".into()));
     assert!(json.get("skins").is_none() && json["asset"]["version"] == "2.0");
+}
+
+#[test]
+fn punctual_lights_keep_intensity_range_and_cone() {
+    let intensity = Vec3::new(0.37, 812.5, 21.0);
+    let light = |kind, range| Light {
+        name: "l".into(),
+        position: Vec3::new(0.3, -2.0, 7.0),
+        direction: Vec3::new(0.48, -0.6, 0.64),
+        intensity,
+        range,
+        kind,
+        ..Light::default()
+    };
+    let spot = LightKind::Spot { inner_angle: 0.2, outer_angle: 0.9 };
+    let kinds = [(LightKind::Point, 5.0), (spot, f32::INFINITY), (LightKind::PARALLEL, f32::INFINITY)];
+    let mut scene = gallery::open("workbench").unwrap();
+    scene.lights = kinds.map(|(kind, range)| light(kind, range)).to_vec();
+    let Encoded { glb, report } = encode(&scene).unwrap();
+    assert!(!report.notes.iter().any(|note| note.element.starts_with("light")), "{:?}", report.notes);
+    let back = read_back(&glb).scene.lights;
+    assert_eq!(back.len(), 3);
+    for (a, b) in back.iter().zip(&scene.lights) {
+        assert!((a.intensity / b.intensity - 1.0).abs().max_element() < 1e-5, "{a:?}");
+        assert!(a.direction.distance(b.direction) < 1e-6, "{a:?}");
+        assert_eq!((a.kind, a.range), (b.kind, b.range));
+        assert_eq!((&a.name, a.camera, a.reflections, a.shadows), (&b.name, false, true, true));
+    }
+}
+
+#[test]
+fn lights_with_a_size_become_the_nearest_without_and_are_told() {
+    let mut scene = gallery::open("workbench").unwrap();
+    let light = |kind| Light { intensity: Vec3::splat(100.0), kind, ..Light::default() };
+    let rectangle = LightKind::Rectangle { across: Vec3::X, size: glam::Vec2::new(0.5, 0.4) };
+    let sun = LightKind::Directional { angular_radius: 0.005 };
+    scene.lights = vec![light(rectangle), light(LightKind::Sphere { radius: 0.1 }), light(sun)];
+    scene.lights[2].unlit = vec![1];
+    let Encoded { glb, report } = encode(&scene).unwrap();
+    let back = read_back(&glb).scene.lights;
+    near(back[0].intensity, Vec3::splat(20.0));
+    near(back[1].intensity, Vec3::splat(std::f32::consts::PI));
+    near(back[2].intensity, Vec3::splat(100.0));
+    assert!(matches!(back[0].kind, LightKind::Spot { .. }));
+    assert_eq!((back[1].kind, back[2].kind), (LightKind::Point, LightKind::PARALLEL));
+    let told = |i: usize| report.notes.iter().filter(|n| n.element.starts_with(&format!("light {i}"))).count();
+    assert_eq!([0, 1, 2].map(told), [1, 1, 2]);
 }
 
 #[test]

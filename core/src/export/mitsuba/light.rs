@@ -6,7 +6,7 @@ use glam::{Affine3A, Mat3, Vec3};
 
 use super::element_name;
 use super::xml::Element;
-use crate::export::{Folder, Loss, image, slug};
+use crate::export::{Folder, Loss, Report, image, slug};
 use crate::file::FileError;
 use crate::scene::{Environment, Light, LightKind};
 
@@ -18,17 +18,35 @@ const WIDEST_PROFILE: f32 = 75.0 * PI / 180.0;
 /// A lamp; units are the same, radiance of one nit being one.
 pub fn lamp(index: usize, light: &Light, folder: &mut Folder<'_>) -> Result<Element, FileError> {
     let place = element_name("light", index, &light.name);
-    if light.range.is_finite() && light.kind != LightKind::Directional {
+    if light.range.is_finite() && matches!(light.kind, LightKind::Point | LightKind::Spot { .. }) {
         folder.report.note(&place, Loss::Dropped, "its range: it shines on by the square of distance");
     }
+    tell_of_switches(light, &place, &mut folder.report);
     let rgb = |name: &str| Element::rgb(name, light.intensity);
     Ok(match light.kind {
         LightKind::Point => Element::plugin("emitter", "point")
             .with(Element::triple("point", "position", light.position))
             .with(rgb("intensity")),
-        LightKind::Directional => Element::plugin("emitter", "directional")
-            .with(Element::triple("vector", "direction", light.direction))
-            .with(rgb("irradiance")),
+        LightKind::Directional { angular_radius } => {
+            if angular_radius > 0.0 {
+                folder.report.note(&place, Loss::Approximated, "its angle: parallel light of the same illuminance");
+            }
+            Element::plugin("emitter", "directional")
+                .with(Element::triple("vector", "direction", light.direction))
+                .with(rgb("irradiance"))
+        }
+        LightKind::Rectangle { across, size } => {
+            // The square of Mitsuba reaches from -1 to 1 and shines along its z.
+            let up = across.cross(light.direction);
+            let axes = Mat3::from_cols(-across * (0.5 * size.x), up * (0.5 * size.y), light.direction);
+            Element::plugin("shape", "rectangle")
+                .with(Element::transform("to_world", &Affine3A::from_mat3_translation(axes, light.position)))
+                .with(Element::plugin("emitter", "area").with(rgb("radiance")))
+        }
+        LightKind::Sphere { radius } => Element::plugin("shape", "sphere")
+            .with(Element::triple("point", "center", light.position))
+            .with(Element::float("radius", radius))
+            .with(Element::plugin("emitter", "area").with(rgb("radiance"))),
         LightKind::Spot { inner_angle, outer_angle } => {
             let matrix = Affine3A::from_mat3_translation(facing(light.direction), light.position);
             let spot = Element::plugin("emitter", "spot")
@@ -51,6 +69,29 @@ pub fn lamp(index: usize, light: &Light, folder: &mut Folder<'_>) -> Result<Elem
             spot.with(Element::float("beam_width", outer_angle.to_degrees())).with(texture)
         }
     })
+}
+
+/// Mitsuba has no switches of lights, and its lights with an area are surfaces.
+fn tell_of_switches(light: &Light, place: &str, report: &mut Report) {
+    let mut note = |loss, what: &str| report.note(place, loss, what);
+    if !light.kind.is_punctual() {
+        note(Loss::Approximated, "a surface that hides what is behind it");
+        if !light.camera {
+            note(Loss::Dropped, "its absence from the view");
+        }
+    }
+    if matches!(light.kind, LightKind::Sphere { .. }) {
+        note(Loss::Dropped, "its light on what is inside of it");
+    }
+    if !light.reflections {
+        note(Loss::Dropped, "its absence from reflections");
+    }
+    if !light.shadows {
+        note(Loss::Dropped, "its lack of shadows");
+    }
+    if !light.unlit.is_empty() {
+        note(Loss::Dropped, "the list of objects that it does not light");
+    }
 }
 
 /// What a spot light gives off through a plane before it, whose edges the outer cone touches: the square of a ramp in the

@@ -23,7 +23,7 @@ use glam::UVec2;
 use super::{Folder, Loss, Report, slug};
 use crate::file::FileError;
 use crate::material::preset::Preset;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, LightKind, Scene};
 use material::Written;
 use xml::Element;
 
@@ -77,7 +77,13 @@ pub fn export(scene: &Scene, view: &View<'_>, options: &Options<'_>, folder: &Pa
     if let Some(map) = &scene.environment {
         root = root.with(light::environment(map, &mut folder)?);
     }
-    for (index, lamp) in scene.lights.iter().enumerate() {
+    // A shape without an area is none there.
+    let is_flat = |kind: LightKind| match kind {
+        LightKind::Rectangle { size, .. } => size.min_element() <= 0.0,
+        LightKind::Sphere { radius } => radius <= 0.0,
+        _ => false,
+    };
+    for (index, lamp) in scene.lights.iter().enumerate().filter(|(_, lamp)| !is_flat(lamp.kind)) {
         root = root.with(light::lamp(index, lamp, &mut folder)?);
     }
     root = root.with_all(materials.iter().enumerate().filter_map(|(index, written)| {

@@ -193,6 +193,27 @@ fn what_no_surface_model_holds_is_told() {
 }
 
 #[test]
+fn lights_with_an_area_are_shapes_that_face_as_they_shine() {
+    let mut scene = plate(Material::default());
+    let light = |kind| Light { position: Vec3::Y, direction: Vec3::NEG_Y, camera: true, kind, ..Light::default() };
+    let rectangle = |size| LightKind::Rectangle { across: Vec3::X, size };
+    scene.lights = vec![
+        light(rectangle(glam::Vec2::new(2.0, 4.0))),
+        light(LightKind::Sphere { radius: 0.25 }),
+        light(rectangle(glam::Vec2::ZERO)),
+        light(LightKind::Directional { angular_radius: 0.01 }),
+    ];
+    let (text, report) = exported(&scene, false);
+    assert_eq!(text.matches("type=\"rectangle\"").count(), 1, "{text}");
+    // Rows: its x is -across, its y up, its z the direction, then the centre.
+    assert!(text.contains("value=\"-1 0 0 0 0 0 -1 1 0 -2 0 0 0 0 0 1\""), "{text}");
+    assert!(text.contains("<float name=\"radius\" value=\"0.25\""), "{text}");
+    assert_eq!(text.matches("type=\"area\"").count(), 2, "{text}");
+    assert_eq!(notes(&report).matches("hides what is behind").count(), 2, "{}", notes(&report));
+    assert_eq!(notes(&report).matches("its angle").count(), 1, "{}", notes(&report));
+}
+
+#[test]
 fn lamps_keep_their_units_and_lose_their_range() {
     let mut scene = plate(Material::default());
     let light = |kind, range| Light {
@@ -202,9 +223,10 @@ fn lamps_keep_their_units_and_lose_their_range() {
         intensity: Vec3::new(1.0, 2.0, 3.0),
         range,
         kind,
+        ..Light::default()
     };
     let spot = LightKind::Spot { inner_angle: 0.2, outer_angle: 0.4 };
-    scene.lights = vec![light(LightKind::Point, 5.0), light(spot, f32::INFINITY), light(LightKind::Directional, 1.0)];
+    scene.lights = vec![light(LightKind::Point, 5.0), light(spot, f32::INFINITY), light(LightKind::PARALLEL, 1.0)];
     let (text, report) = exported(&scene, false);
     for part in ["name=\"intensity\" value=\"1 2 3\"", "name=\"irradiance\" value=\"1 2 3\"", "type=\"spot\""] {
         assert!(text.contains(part), "{part}: {text}");

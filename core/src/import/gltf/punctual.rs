@@ -47,13 +47,14 @@ pub(super) fn light(
         intensity,
         range,
         kind: kind(json, index, at, report)?,
+        ..Light::default()
     })
 }
 
 fn kind(json: &Json, index: usize, at: &str, report: &mut Report) -> Result<LightKind, Cause> {
     Ok(match json.type_ {
         Checked::Valid(Type::Point) => LightKind::Point,
-        Checked::Valid(Type::Directional) => LightKind::Directional,
+        Checked::Valid(Type::Directional) => LightKind::PARALLEL,
         Checked::Valid(Type::Spot) => {
             let spot = json.spot.clone().unwrap_or_default();
             // An absent `spot` object means the defaults of its fields, which are not those of Rust.

@@ -221,7 +221,7 @@ fn lights_and_cameras_come_to_world_space_without_scale() {
     assert_eq!((spot.intensity, spot.range), (Vec3::new(10.0, 5.0, 0.0), 4.0));
     assert!(spot.direction.abs_diff_eq(Vec3::Y, 1e-6) && spot.position == Vec3::new(0.0, 0.0, 5.0));
     assert_eq!((point.kind, point.range), (LightKind::Point, f32::INFINITY));
-    assert_eq!((sun.kind, sun.name.as_str(), sun.intensity), (LightKind::Directional, "sun", Vec3::splat(2.0)));
+    assert_eq!((sun.kind, sun.name.as_str(), sun.intensity), (LightKind::PARALLEL, "sun", Vec3::splat(2.0)));
     let camera = &imported.scene.cameras[0];
     assert_eq!(camera.projection, Projection::Perspective { yfov: 0.8, near: 0.1 });
     assert!((camera.world_from_view.matrix3.determinant() - 1.0).abs() < 1e-6);

@@ -39,7 +39,7 @@ fn looking(eye: Vec3, target: Vec3) -> impl Fn(u32) -> View {
 
 fn lamp(position: Vec3, intensity: f32, kind: LightKind) -> Light {
     let direction = Vec3::new(0.0, -0.8, -0.6);
-    Light { name: "lamp".into(), position, direction, intensity: Vec3::splat(intensity), range: f32::INFINITY, kind }
+    Light { name: "lamp".into(), position, direction, intensity: Vec3::splat(intensity), kind, ..Light::default() }
 }
 
 /// All walls glow alike and are grey: L = e / (1 - a). Bright light outside must not come in.

@@ -43,7 +43,8 @@ fn shadows_of_half_transparent_panes_are_half_dark() {
         direction: Vec3::NEG_Z,
         intensity: Vec3::splat(std::f32::consts::PI),
         range: f32::INFINITY,
-        kind: LightKind::Directional,
+        kind: LightKind::PARALLEL,
+        ..Light::default()
     });
     let mut view = view(Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 8, 1);
     view.camera = Camera::look_at("below the pane", Vec3::new(0.0, 0.0, 0.9), Vec3::ZERO, 0.5);
@@ -67,7 +68,8 @@ fn chances_of_the_rays_of_a_path_do_not_hang_together() {
         direction: -toward_sun,
         intensity: Vec3::splat(std::f32::consts::PI),
         range: f32::INFINITY,
-        kind: LightKind::Directional,
+        kind: LightKind::PARALLEL,
+        ..Light::default()
     });
     let eye = Vec3::new(2.4, 0.3, 3.0);
     let mut view = view(eye, Vec3::ZERO, 8, 1);

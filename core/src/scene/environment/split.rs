@@ -60,15 +60,15 @@ impl Sun {
         Sun { direction, irradiance: map.scale() * self.irradiance, ..self }
     }
 
-    /// As a light of a scene.
+    /// As a light of a scene, which the eye sees.
     pub fn light(&self, name: &str) -> Light {
         Light {
             name: name.into(),
-            position: Vec3::ZERO,
             direction: -self.direction,
             intensity: self.irradiance,
-            range: f32::INFINITY,
-            kind: LightKind::Directional,
+            kind: LightKind::Directional { angular_radius: self.angular_radius },
+            camera: true,
+            ..Light::default()
         }
     }
 }

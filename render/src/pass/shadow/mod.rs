@@ -76,7 +76,8 @@ impl ShadowPass {
         let mut data = Vec::new();
         let mut matrices = Vec::new();
         let mut unshadowed = Vec::new();
-        for light in &scene.lights {
+        // Lights with an area are not drawn live yet.
+        for light in scene.lights.iter().filter(|light| light.kind.is_punctual()) {
             let views = light_views(light, bounds);
             let fits = matrices.len() + views.len() <= LAYERS_MAX as usize;
             let layer = if fits && !views.is_empty() { matrices.len() as u32 } else { SHADOW_NONE };
@@ -206,24 +207,25 @@ fn light_views(light: &Light, bounds: Bounds) -> Vec<Mat4> {
             let angle = 2.0 * outer_angle.clamp(1e-3, SPOT_ANGLE_MAX);
             vec![proj::perspective_infinite_reverse(angle, 1.0, near) * toward(light.direction)]
         }
-        LightKind::Directional => {
+        LightKind::Directional { .. } => {
             let eye = bounds.center() - light.direction * (2.0 * radius);
             let view = view::look_to_mat4(eye, light.direction, up_for(light.direction));
             // Far and near are exchanged: depth is reversed.
             vec![proj::orthographic(-radius, radius, -radius, radius, 4.0 * radius, 0.0) * view]
         }
+        LightKind::Rectangle { .. } | LightKind::Sphere { .. } => Vec::new(),
     }
 }
 
 fn light_data(light: &Light, bounds: Bounds, shadow_layer: u32) -> LightData {
     let (kind, spot_scale, spot_offset, extent) = match light.kind {
-        LightKind::Point => (LIGHT_POINT, 0.0, 1.0, 2.0),
+        LightKind::Point | LightKind::Rectangle { .. } | LightKind::Sphere { .. } => (LIGHT_POINT, 0.0, 1.0, 2.0),
         LightKind::Spot { inner_angle, outer_angle } => {
             // KHR_lights_punctual, "Inner and Outer Cone Angles".
             let scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
             (LIGHT_SPOT, scale, -outer_angle.cos() * scale, 2.0 * outer_angle.clamp(1e-3, SPOT_ANGLE_MAX).tan())
         }
-        LightKind::Directional => (LIGHT_DIRECTIONAL, 0.0, 1.0, 2.0 * bounds.radius()),
+        LightKind::Directional { .. } => (LIGHT_DIRECTIONAL, 0.0, 1.0, 2.0 * bounds.radius()),
     };
     LightData {
         position: light.position,

@@ -1,6 +1,5 @@
 //! Rows of the scene tree: which there are, and how one is drawn.
 
-use burnish_core::scene::LightKind;
 use eframe::egui::{self, Key, RichText, Role, WidgetInfo};
 
 use super::{Action, Renaming};
@@ -260,14 +259,9 @@ fn material_ui(ui: &mut egui::Ui, material: usize, session: &Session, actions: &
 
 fn light_ui(ui: &mut egui::Ui, light: usize, session: &Session) {
     let Some(light) = session.scene().lights.get(light) else { return };
-    let kind = match light.kind {
-        LightKind::Directional => "directional",
-        LightKind::Point => "point",
-        LightKind::Spot { .. } => "spot",
-    };
     ui.add_space(EYE_WIDTH + 6.0);
     ui.add(egui::Label::new(named(&light.name)).truncate());
-    ui.weak(kind);
+    ui.weak(light.kind.label());
 }
 
 fn camera_ui(ui: &mut egui::Ui, camera: usize, session: &Session, actions: &mut Vec<Action>) {

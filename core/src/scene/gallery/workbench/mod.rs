@@ -84,5 +84,6 @@ fn spot() -> Light {
         intensity: Vec3::new(13.0, 11.8, 10.0),
         range: f32::INFINITY,
         kind: LightKind::Spot { inner_angle: 0.3, outer_angle: 0.5 },
+        ..Light::default()
     }
 }

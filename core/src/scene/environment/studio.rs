@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::direction;
 use crate::color::observer::{CMF, COUNT, wavelength_nm};
@@ -27,7 +28,8 @@ pub struct Studio {
 }
 
 /// The outline of a softbox.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Shape {
     /// With corners.
     #[default]

@@ -11,8 +11,8 @@ const CLIP_UNDER: f32 = 0.5 / 255.0;
 // The band of an exposed luminance, sRGB encoded.
 fn false_color(exposed_luminance: f32) -> vec3f {
     // Stops about middle grey from which on a band holds, after the first.
-    const from_stops = array<f32, 12>(-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 3.0, 4.0);
-    const colors = array<vec3f, 12>(
+    var from_stops = array<f32, 12>(-6.0, -5.0, -4.0, -3.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 3.0, 4.0);
+    var colors = array<vec3f, 12>(
         vec3f(0.13, 0.02, 0.30),
         vec3f(0.10, 0.08, 0.55),
         vec3f(0.05, 0.20, 0.75),

@@ -1,14 +1,14 @@
-//! The environment of a document: its entry, and what a scene gets from it.
+//! The environment of a document: its entry. What a scene gets from it is made in `maps.rs`.
 
-use std::sync::Arc;
+use std::ops::RangeInclusive;
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{is_default, one};
-use crate::scene::environment::{NoSun, Shape, SkyModel, SoftBox, Split, Studio, blurred, kelvin_color, split_sun};
-use crate::scene::{Background, Environment, Ground, Scene};
+use crate::scene::Environment;
+use crate::scene::environment::{Shape, SkyModel, SoftBox, Studio, kelvin_color};
 
 /// The environment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ pub enum BackgroundEntry {
     Unknown(Value),
 }
 
-/// A dome on a ground, see [`Ground`].
+/// A dome on a ground, see [`Ground`](crate::scene::Ground).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GroundEntry {
@@ -257,7 +257,7 @@ impl Default for SoftBoxEntry {
     }
 }
 
-fn vec3(v: [f64; 3]) -> Vec3 {
+pub(super) fn vec3(v: [f64; 3]) -> Vec3 {
     Vec3::from_array(v.map(|v| v as f32))
 }
 
@@ -313,7 +313,7 @@ impl MadeEntry {
 impl EnvironmentEntry {
     /// The first number out of its range, in words; `place` is what its field follows.
     pub(super) fn check(&self, place: &str) -> Result<(), String> {
-        let mut numbers = vec![
+        let mut numbers: Vec<Number> = vec![
             ("rotation_deg", self.rotation_deg, -1e6..=1e6),
             ("strength", self.strength, 0.0..=1e6),
             ("background_blur_deg", self.background_blur_deg, 0.0..=90.0),
@@ -328,15 +328,45 @@ impl EnvironmentEntry {
             numbers.extend(ground.level.map(|v| ("ground.level", v, -1e6..=1e6)));
             numbers.extend(ground.middle.iter().flatten().map(|v| ("ground.middle", *v, -1e6..=1e6)));
         }
-        match &self.made {
-            Some(MadeEntry::Sky(sky)) => {
+        numbers.extend(self.made.iter().flat_map(MadeEntry::numbers));
+        first_outside(numbers).map_or(Ok(()), |fault| Err(fault.words(&format!("{place}environment."))))
+    }
+}
+
+/// A number with its field and what it may be.
+type Number = (&'static str, f64, RangeInclusive<f64>);
+
+/// A number out of its range.
+struct Outside(Number);
+
+impl Outside {
+    fn words(&self, place: &str) -> String {
+        let Outside((field, value, range)) = self;
+        format!("field `{place}{field}` is {value}; it takes {} to {}", range.start(), range.end())
+    }
+}
+
+fn first_outside(numbers: Vec<Number>) -> Option<Outside> {
+    numbers.into_iter().find(|(_, value, range)| !range.contains(value)).map(Outside)
+}
+
+impl MadeEntry {
+    /// The first number out of its range, in words.
+    pub fn check(&self) -> Result<(), String> {
+        first_outside(self.numbers()).map_or(Ok(()), |fault| Err(fault.words("")))
+    }
+
+    fn numbers(&self) -> Vec<Number> {
+        let mut numbers: Vec<Number> = Vec::new();
+        match self {
+            MadeEntry::Sky(sky) => {
                 numbers.push(("made.sky.turbidity", sky.turbidity, 1.7..=10.0));
                 numbers.push(("made.sky.elevation_deg", sky.elevation_deg, 0.0..=90.0));
                 numbers.push(("made.sky.azimuth_deg", sky.azimuth_deg, -1e6..=1e6));
                 numbers.extend(sky.ground.map(|v| ("made.sky.ground", v, 0.0..=1.0)));
                 numbers.push(("made.sky.rows", sky.rows.into(), 16.0..=2048.0));
             }
-            Some(MadeEntry::Studio(studio)) => {
+            MadeEntry::Studio(studio) => {
                 let colors = [studio.top, studio.horizon, studio.bottom].concat();
                 numbers.extend(colors.into_iter().map(|v| ("made.studio", v, 0.0..=1e6)));
                 numbers.push(("made.studio.rows", studio.rows.into(), 16.0..=2048.0));
@@ -353,143 +383,10 @@ impl EnvironmentEntry {
                     numbers.extend(lamp.gradient.map(|v| ("made.studio.boxes.gradient", v, -1.0..=1.0)));
                 }
             }
-            Some(MadeEntry::Unknown(_)) | None => {}
+            MadeEntry::Unknown(_) => {}
         }
-        match numbers.into_iter().find(|(_, value, range)| !range.contains(value)) {
-            Some((field, value, range)) => {
-                let (start, end) = (range.start(), range.end());
-                Err(format!("field `{place}environment.{field}` is {value}; it takes {start} to {end}"))
-            }
-            None => Ok(()),
-        }
+        numbers
     }
-}
-
-/// Maps of each sort that are kept.
-const KEPT: usize = 4;
-
-/// Maps that were made, so that an edit of other things makes none again.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Maps {
-    /// The last used first, as in all lists.
-    made: Vec<(MadeEntry, Arc<Environment>)>,
-    /// By the texels and the width of the map and the blur.
-    blurred: Vec<((Arc<[Vec3]>, u32, f64), Environment)>,
-    /// By texels and width.
-    split: Vec<((Arc<[Vec3]>, u32), Result<Split, NoSun>)>,
-}
-
-/// Finds an entry or makes it, and puts it first.
-fn kept<K: Clone, V: Clone>(list: &mut Vec<(K, V)>, key: &K, same: impl Fn(&K) -> bool, make: impl FnOnce() -> V) -> V {
-    let entry = match list.iter().position(|(known, _)| same(known)) {
-        Some(place) => list.remove(place),
-        None => (key.clone(), make()),
-    };
-    let value = entry.1.clone();
-    list.insert(0, entry);
-    list.truncate(KEPT);
-    value
-}
-
-impl Maps {
-    /// The map by numbers, if the document has one that counts.
-    pub fn made(&mut self, entry: &EnvironmentEntry, notices: &mut Vec<String>) -> Option<Arc<Environment>> {
-        let made = entry.made.as_ref().filter(|_| entry.source.is_none())?;
-        if let MadeEntry::Unknown(value) = made {
-            let kind = value.as_object().and_then(|o| o.keys().next()).map_or("made", String::as_str);
-            notices.push(format!("environment: this version cannot make `{kind}`; the light of the scene is used"));
-            return None;
-        }
-        // Unknown entries ended above; black stands in for nothing.
-        let make = || Arc::new(made.map().unwrap_or_else(|| Environment::new("", 1, 1, vec![Vec3::ZERO])));
-        Some(kept(&mut self.made, made, |known| known == made, make))
-    }
-
-    fn blurred(&mut self, map: &Environment, half_width_deg: f64) -> Environment {
-        let key = (map.texels.clone(), map.width, half_width_deg);
-        let same = |(texels, width, blur): &(Arc<[Vec3]>, u32, f64)| {
-            Arc::ptr_eq(texels, &map.texels) && (*width, *blur) == (map.width, half_width_deg)
-        };
-        kept(&mut self.blurred, &key, same, || blurred(map, half_width_deg))
-    }
-
-    fn split(&mut self, map: &Environment) -> Result<Split, NoSun> {
-        let key = (map.texels.clone(), map.width);
-        let same = |(texels, width): &(Arc<[Vec3]>, u32)| Arc::ptr_eq(texels, &map.texels) && *width == map.width;
-        kept(&mut self.split, &key, same, || split_sun(map))
-    }
-
-    /// Puts the map of a document into its scene, with all that the entry says about it.
-    pub fn place(&mut self, scene: &mut Scene, map: &Environment, entry: &EnvironmentEntry, notices: &mut Vec<String>) {
-        let placed = |of: &Environment| Environment {
-            rotation: map.rotation + entry.rotation_deg.to_radians() as f32,
-            strength: map.strength * entry.strength as f32,
-            tint: map.tint * vec3(entry.tint),
-            ..of.clone()
-        };
-        let mut lit = placed(map);
-        scene.background = Background { map: self.background(&lit, entry, notices), ground: None };
-        scene.background.ground = entry.ground.as_ref().and_then(|ground| on_ground(scene, ground, notices));
-        // Blurred backgrounds have the sun in them already.
-        let seen = scene.background.map.is_none();
-        let mut suns = Vec::new();
-        if entry.sun_split {
-            match self.split(map) {
-                Ok(split) => {
-                    lit = placed(&split.rest);
-                    suns.push(split.sun.of(&lit).light(&format!("Sun of {}", map.name)));
-                }
-                Err(reason) => notices.push(format!("environment `{}`: no sun was taken out: {reason}", map.name)),
-            }
-        }
-        if let (Some(MadeEntry::Sky(sky)), None) = (&entry.made, &entry.source)
-            && sky.sun
-        {
-            suns.push(sky.model().sun().of(&lit).light("Sun of the sky"));
-        }
-        suns.iter_mut().for_each(|sun| sun.camera = seen);
-        scene.lights.extend(suns);
-        scene.environment = Some(Arc::new(lit));
-    }
-
-    /// What is seen in the place of the environment.
-    fn background(
-        &mut self,
-        lit: &Environment,
-        entry: &EnvironmentEntry,
-        notices: &mut Vec<String>,
-    ) -> Option<Arc<Environment>> {
-        match &entry.background {
-            BackgroundEntry::Color(color) => return Background::of_color(vec3(*color)).map,
-            BackgroundEntry::Environment => {}
-            BackgroundEntry::Unknown(value) => {
-                notices.push(format!("background {value} is not in this version; the environment is shown"));
-            }
-        }
-        (entry.background_blur_deg > 0.0).then(|| {
-            let soft = self.blurred(lit, entry.background_blur_deg);
-            Arc::new(Environment { rotation: lit.rotation, strength: lit.strength, tint: lit.tint, ..soft })
-        })
-    }
-}
-
-/// The ground where the entry leaves its place to the scene.
-fn on_ground(scene: &Scene, entry: &GroundEntry, notices: &mut Vec<String>) -> Option<Ground> {
-    let bounds = if entry.level.is_none() || entry.middle.is_none() { Some(scene.bounds()) } else { None };
-    let bounds = bounds.filter(|bounds| !bounds.is_empty());
-    let level = entry.level.map(|v| v as f32).or(bounds.map(|b| b.min.y)).unwrap_or(0.0);
-    let center = bounds.map_or(Vec3::ZERO, |b| b.center());
-    let [x, z] = entry.middle.map_or([center.x, center.z], |middle| middle.map(|v| v as f32));
-    let ground = Ground {
-        middle: Vec3::new(x, level, z),
-        height: entry.height as f32,
-        radius: entry.radius as f32,
-        shadows: entry.shadows,
-    };
-    if !ground.is_sound() {
-        notices.push("environment: the ground needs a height above 0 and a larger radius; it is left out".into());
-    }
-    Some(ground).filter(Ground::is_sound)
 }
 
 #[cfg(test)]

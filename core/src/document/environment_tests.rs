@@ -1,8 +1,11 @@
+use std::sync::Arc;
+
+use glam::Vec3;
 use serde_json::json;
 
 use super::*;
 use crate::document::{Curves, Document, Sources, resolve};
-use crate::scene::LightKind;
+use crate::scene::{LightKind, Scene};
 
 fn entry(value: Value) -> EnvironmentEntry {
     serde_json::from_value(value).unwrap()

@@ -12,6 +12,7 @@ mod environment;
 mod format;
 mod history;
 mod keys;
+mod maps;
 mod open;
 mod paths;
 mod resolve;

@@ -56,7 +56,7 @@ fn left(scene: &Arc<Scene>, point: Vec3, samples: u32) -> f64 {
 #[test]
 fn under_a_plate_in_even_light_the_ground_is_darker_by_its_form_factor() {
     // From a point under the middle of a square of half side a at height h, A = a / h: four corners, each
-    // A / sqrt(1 + A^2) atan(A / sqrt(1 + A^2)) / pi (Howell, A Catalog of Radiation Configuration Factors, B-3).
+    // A / sqrt(1 + A^2) atan(A / sqrt(1 + A^2)) / pi (Howell (catalog), B-3).
     let root = 2f64.sqrt();
     let form = 4.0 * (1.0 / root) * (1.0 / root).atan() / std::f64::consts::PI;
     let found = left(&scene(even(0.7), Vec::new()), Vec3::ZERO, 1 << 14);

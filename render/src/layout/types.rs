@@ -51,6 +51,7 @@ macro_rules! shared {
 /// Every shared struct.
 pub const STRUCTS: &[Struct] = &[
     ViewData::LAYOUT,
+    BackgroundData::LAYOUT,
     DisplayData::LAYOUT,
     SourceData::LAYOUT,
     EnvironmentStep::LAYOUT,

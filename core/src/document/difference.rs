@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Assigned, Assignment, Document, MaterialEntry, Side, Snapshot};
+use super::{Assigned, Assignment, BackgroundEntry, Document, EnvironmentEntry, MaterialEntry, Side, Snapshot};
 use crate::lighting;
 use crate::material::{Material, params};
 use crate::param::{self, ParamSpec, ParamValue};
@@ -28,6 +28,14 @@ pub enum Place {
     Rotation,
     /// Factor on the radiance of the environment.
     Strength,
+    /// Colour of the environment.
+    Tint,
+    /// The map by numbers.
+    Made,
+    /// What the eye sees behind everything: colour, blur, ground.
+    Background,
+    /// Whether the sun of the environment is a light.
+    SunSplit,
     /// The lighting method.
     Method,
     /// A setting of the lighting method, by its key.
@@ -131,6 +139,16 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     let number = |value: f64, unit: &str| (Some(Value::from(value)), format!("{}{unit}", digits(value)));
     all.insert(Place::Rotation, number(environment.rotation_deg, " deg"));
     all.insert(Place::Strength, number(environment.strength, ""));
+    let [r, g, b] = environment.tint.map(digits);
+    all.insert(Place::Tint, (serde_json::to_value(environment.tint).ok(), format!("{r} {g} {b}")));
+    if let Some(made) = &environment.made {
+        let value = serde_json::to_value(made).ok();
+        let words = value.as_ref().map(Value::to_string).unwrap_or_default();
+        all.insert(Place::Made, (value, words));
+    }
+    all.insert(Place::Background, background(environment));
+    let split = environment.sun_split;
+    all.insert(Place::SunSplit, (Some(Value::from(split)), if split { "a light" } else { "in the map" }.into()));
     let lighting = &document.lighting;
     all.insert(Place::Method, text(&lighting.method));
     for (key, value) in &lighting.settings {
@@ -151,6 +169,24 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     all.insert(Place::Exposure, number(view.exposure_ev, " EV"));
     all.insert(Place::Tone, text(&view.tone));
     all
+}
+
+fn background(environment: &EnvironmentEntry) -> Held {
+    let EnvironmentEntry { background, background_blur_deg: blur, ground, .. } = environment;
+    let value = serde_json::to_value((background, blur, ground)).ok();
+    let mut words = match background {
+        BackgroundEntry::Environment => "environment".to_string(),
+        BackgroundEntry::Color(color) => color.map(digits).join(" "),
+        BackgroundEntry::Unknown(value) => value.to_string(),
+    };
+    if *blur > 0.0 {
+        words += &format!(", blurred {} deg", digits(*blur));
+    }
+    if let Some(ground) = ground {
+        let shadows = if ground.shadows { " with shadows" } else { "" };
+        words += &format!(", ground {} m below, {} m wide{shadows}", digits(ground.height), digits(ground.radius));
+    }
+    (value, words)
 }
 
 fn parts(document: &Document, entry: &MaterialEntry, material: Option<&Material>) -> Vec<(Part, Held)> {
@@ -200,16 +236,15 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Whole) => "is not there".into(),
         Place::Material(_, Part::Metal) => "none".into(),
         Place::Material(_, Part::Form) => "as the scene".into(),
-        Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map => "as the model".into(),
+        Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map | Place::Made => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
         Place::Override(_) => "as the scene".into(),
         Place::Light(_) if document.lights.is_some() => "is not there".into(),
         Place::Light(_) => "as the model".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
-        Place::Rotation | Place::Strength | Place::Method | Place::Camera | Place::Exposure | Place::Tone => {
-            String::new()
-        }
+        Place::Rotation | Place::Strength | Place::Tint | Place::Background | Place::SunSplit => String::new(),
+        Place::Method | Place::Camera | Place::Exposure | Place::Tone => String::new(),
     }
 }
 
@@ -218,7 +253,8 @@ fn group(place: &Place) -> String {
         Place::Material(name, _) => format!("Material {name}"),
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
         Place::Light(_) => "Lights".into(),
-        Place::Map | Place::Rotation | Place::Strength => "Environment".into(),
+        Place::Map | Place::Rotation | Place::Strength | Place::Tint => "Environment".into(),
+        Place::Made | Place::Background | Place::SunSplit => "Environment".into(),
         Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
         Place::Reference(_) => "Reference".into(),
         Place::Camera | Place::Exposure | Place::Tone => "View".into(),
@@ -239,6 +275,10 @@ fn label(place: &Place) -> String {
         Place::Map => "HDRI".into(),
         Place::Rotation => "Rotation".into(),
         Place::Strength => "Strength".into(),
+        Place::Tint => "Tint".into(),
+        Place::Made => "Made map".into(),
+        Place::Background => "Background".into(),
+        Place::SunSplit => "Sun".into(),
         Place::Method => "Method".into(),
         Place::Lighting(key) => of(setting_of_any_method(key), key),
         Place::Override(object) => format!("Method of {object}"),
@@ -326,6 +366,15 @@ impl Document {
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,
+            Place::Tint => self.environment.tint = from.environment.tint,
+            Place::Made => self.environment.made.clone_from(&from.environment.made),
+            Place::Background => {
+                let (to, from) = (&mut self.environment, &from.environment);
+                to.background.clone_from(&from.background);
+                to.background_blur_deg = from.background_blur_deg;
+                to.ground.clone_from(&from.ground);
+            }
+            Place::SunSplit => self.environment.sun_split = from.environment.sun_split,
             Place::Method => self.lighting.choose(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
             Place::Override(key) => match from.lighting.overrides.get(key) {

@@ -8,12 +8,14 @@ mod by_method;
 mod camera;
 mod difference;
 mod edit;
+mod environment;
 mod format;
 mod history;
 mod keys;
 mod light;
 mod lighting_preset;
 mod lights;
+mod maps;
 mod open;
 mod paths;
 mod resolve;
@@ -36,6 +38,7 @@ use crate::surface::fresnel::Form;
 pub use by_method::mixed_methods;
 pub use difference::{Difference, Part, Place, differences};
 pub use edit::Assigned;
+pub use environment::{BackgroundEntry, EnvironmentEntry, GroundEntry, MadeEntry, SkyEntry, SoftBoxEntry, StudioEntry};
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
@@ -177,23 +180,6 @@ pub struct ObjectEntry {
     pub other: Map<String, Value>,
 }
 
-/// The environment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EnvironmentEntry {
-    /// Path of the HDRI; that of the scene, else the built-in studio, when absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// Degrees counter-clockwise about +y.
-    #[serde(default)]
-    pub rotation_deg: f64,
-    /// Factor on the radiance.
-    #[serde(default = "one")]
-    pub strength: f64,
-    /// Fields that this version does not know.
-    #[serde(flatten)]
-    pub other: Map<String, Value>,
-}
-
 /// A point of view that turns about a target: +y is up, the front of a model looks along +z.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CameraEntry {
@@ -298,12 +284,6 @@ fn one() -> f64 {
 
 fn default_tone() -> String {
     crate::color::tone::ToneMap::default().id().into()
-}
-
-impl Default for EnvironmentEntry {
-    fn default() -> Self {
-        EnvironmentEntry { source: None, rotation_deg: 0.0, strength: 1.0, other: Map::new() }
-    }
 }
 
 impl Default for LightingEntry {

@@ -4,6 +4,7 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
+use super::maps::Maps;
 use super::{
     Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, center_of, material_keys, object_keys,
     placeholder, role_key, shining,
@@ -30,6 +31,8 @@ pub struct Curves {
     made: Vec<(Preset, Form, Arc<Fresnel>)>,
     /// Fits of metals that do not bring theirs, in the same order.
     fitted: Vec<(Preset, Arc<Fits>)>,
+    /// Environments.
+    maps: Maps,
 }
 
 impl Curves {
@@ -158,10 +161,9 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         }
         found
     });
+    let map = map.or_else(|| curves.maps.made(&document.environment, &mut notices));
     let map = map.or_else(|| scene.environment.clone()).unwrap_or_else(|| STUDIO.clone());
-    let turned = map.rotation + document.environment.rotation_deg.to_radians() as f32;
-    let strength = map.strength * document.environment.strength as f32;
-    scene.environment = Some(Arc::new(Environment { rotation: turned, strength, ..Environment::clone(&map) }));
+    curves.maps.place(&mut scene, &map, &document.environment, &mut notices);
     Resolved { scene: Arc::new(scene), object_keys, base, missing, notices }
 }
 

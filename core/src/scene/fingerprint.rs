@@ -9,7 +9,9 @@ use blake3::{Hash, Hasher};
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
-use super::{Camera, Environment, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels};
+use super::{
+    Background, Camera, Environment, Ground, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels,
+};
 use crate::material::{AlphaMode, Material, Reflectance, Sampler, TextureRef};
 
 /// Hashes of the parts of a scene, so that it can be told which of two differ.
@@ -23,6 +25,8 @@ pub struct Fingerprint {
     pub lights: Digest,
     /// The environment.
     pub environment: Digest,
+    /// What only the eye sees of it; `None` where it sees the environment as it is.
+    pub background: Option<Digest>,
 }
 
 /// 256 bits, written as hexadecimal digits.
@@ -54,6 +58,7 @@ impl Fingerprint {
             lights: _,
             cameras: _,
             environment: _,
+            background,
             subject: _,
         } = scene;
         Fingerprint {
@@ -61,6 +66,7 @@ impl Fingerprint {
             materials: materials(scene),
             lights: lights(scene),
             environment: environment(scene),
+            background: (!background.is_plain()).then(|| digest(|h| h.background(background))),
         }
     }
 }
@@ -244,15 +250,31 @@ impl Sponge {
 
     fn environment(&mut self, environment: &Environment) {
         self.map(environment);
-        self.floats(&[environment.rotation, environment.strength]);
+        let Environment { rotation, strength, tint, .. } = environment;
+        self.floats(&[*rotation, *strength]);
+        // Hashes of maps without a tint are those of the time before there were tints.
+        if *tint != Vec3::ONE {
+            self.color(*tint);
+        }
     }
 
-    /// All but how it is turned and scaled.
+    /// All but how it is turned, scaled and tinted.
     fn map(&mut self, environment: &Environment) {
-        let Environment { name: _, width, height, texels, rotation: _, strength: _ } = environment;
+        let Environment { name: _, width, height, texels, rotation: _, strength: _, tint: _ } = environment;
         self.word(*width);
         self.word(*height);
         self.vectors(texels);
+    }
+
+    fn background(&mut self, background: &Background) {
+        let Background { map, ground } = background;
+        self.option(map.as_deref(), Sponge::environment);
+        self.option(ground.as_ref(), |h, ground| {
+            let Ground { middle, height, radius, shadows } = ground;
+            h.color(*middle);
+            h.floats(&[*height, *radius]);
+            h.flag(*shadows);
+        });
     }
 
     fn material(&mut self, material: &Material) {

@@ -22,13 +22,23 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let first = textureLoad(words0, pixel, 0);
     if first.x == 0u {
-        return vec4f(min(classical_radiance(background_direction(position.xy), 0.0), vec3f(frame_max)), 1.0);
+        let seen = background_seen(background_origin(position.xy), background_direction(position.xy));
+        return vec4f(min(seen, vec3f(frame_max)), 1.0);
     }
     let packed = Packed(
         first, textureLoad(words1, pixel, 0), textureLoad(words2, pixel, 0), textureLoad(words3, pixel, 0),
     );
     let world = unproject(position.xy, textureLoad(depth, pixel, 0));
     return vec4f(shade(texel_unpack(packed), world.xyz / world.w, pixel), 1.0);
+}
+
+// Where the ray of a pixel starts.
+fn background_origin(pixel: vec2f) -> vec3f {
+    if view.viewer.w == 0.0 {
+        let near = unproject(pixel, 1.0);
+        return near.xyz / near.w;
+    }
+    return view.viewer.xyz;
 }
 
 // Direction in which a pixel looks past everything.

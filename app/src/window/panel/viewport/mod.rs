@@ -354,6 +354,7 @@ fn frame_of(session: &Session, size: UVec2, moving: bool) -> Frame {
         settings: document.lighting.settings(),
         tone: document.view.tone.parse::<ToneMap>().unwrap_or_default(),
         exposure_ev: document.view.exposure_ev as f32,
+        mode: Default::default(),
         moving,
     }
 }

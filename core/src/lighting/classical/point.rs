@@ -12,7 +12,8 @@ use super::Classical;
 
 impl ShadePoint for Classical {
     fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
-        let direct = point.emission() + point.punctual();
+        // Lights with a size by sampling.
+        let direct = point.emission() + point.punctual() + point.wide_lamps(random).0;
         let map = point.world().scene().environment.as_ref();
         let Some(maps) = map.and_then(|map| PreparedMaps::new(prepared, map)) else { return direct };
         let FrameSettings { samples, .. } = FrameSettings::new(settings);

@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(scene(&document).lights.len(), 1);
         document.edit_light(&model, &name, |light| light.muted = true);
         assert_eq!(scene(&document).lights.len(), before.lights.len() + 1, "a muted solo counts as none");
-        document.remove_lights(&model, &[name.clone()]);
+        document.remove_lights(&model, std::slice::from_ref(&name));
         assert!(document.light(&model, &name).is_none());
     }
 

@@ -16,10 +16,27 @@ const KEPT: usize = 4;
 pub(super) struct Maps {
     /// The last used first, as in all lists.
     made: Vec<(MadeEntry, Arc<Environment>)>,
-    /// By the texels and the width of the map and the blur.
-    blurred: Vec<((Arc<[Vec3]>, u32, f64), Environment)>,
-    /// By texels and width.
-    split: Vec<((Arc<[Vec3]>, u32), Result<Split, NoSun>)>,
+    /// With the blur.
+    blurred: Vec<(Key<f64>, Environment)>,
+    split: Vec<(Key<()>, Result<Split, NoSun>)>,
+}
+
+/// A map by its texels, which copies share, and what was asked of it.
+#[derive(Clone, Debug)]
+struct Key<A> {
+    texels: Arc<[Vec3]>,
+    width: u32,
+    asked: A,
+}
+
+impl<A: PartialEq> Key<A> {
+    fn new(map: &Environment, asked: A) -> Key<A> {
+        Key { texels: map.texels.clone(), width: map.width, asked }
+    }
+
+    fn is(&self, other: &Key<A>) -> bool {
+        Arc::ptr_eq(&self.texels, &other.texels) && self.width == other.width && self.asked == other.asked
+    }
 }
 
 /// Finds an entry or makes it, and puts it first.
@@ -49,17 +66,13 @@ impl Maps {
     }
 
     fn blurred(&mut self, map: &Environment, half_width_deg: f64) -> Environment {
-        let key = (map.texels.clone(), map.width, half_width_deg);
-        let same = |(texels, width, blur): &(Arc<[Vec3]>, u32, f64)| {
-            Arc::ptr_eq(texels, &map.texels) && (*width, *blur) == (map.width, half_width_deg)
-        };
-        kept(&mut self.blurred, &key, same, || blurred(map, half_width_deg))
+        let key = Key::new(map, half_width_deg);
+        kept(&mut self.blurred, &key, |known| known.is(&key), || blurred(map, half_width_deg))
     }
 
     fn split(&mut self, map: &Environment) -> Result<Split, NoSun> {
-        let key = (map.texels.clone(), map.width);
-        let same = |(texels, width): &(Arc<[Vec3]>, u32)| Arc::ptr_eq(texels, &map.texels) && *width == map.width;
-        kept(&mut self.split, &key, same, || split_sun(map))
+        let key = Key::new(map, ());
+        kept(&mut self.split, &key, |known| known.is(&key), || split_sun(map))
     }
 
     /// Puts the map of a document into its scene, with all that the entry says about it.

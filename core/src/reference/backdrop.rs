@@ -16,8 +16,9 @@ use crate::trace::Ray;
 
 /// How far above the ground shadow rays start, as a share of the height of the map above it.
 const LIFT: f32 = 1e-4;
-/// Directions across and up by which the light of a lamp with a size is summed.
-const GRID: u32 = 8;
+
+/// Points along each side of a lamp with a size, by which its irradiance is known.
+const SHAPE_POINTS: u32 = 6;
 
 /// The background along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +50,7 @@ pub(super) fn look(world: &World, ray: &Ray, sampler: &mut PathSampler) -> Seen 
     };
     let point = point + LIFT * ground.height * Vec3::Y;
     let plane = Plane { world, point, salt: sampler.salt() };
-    let ([a, b, x, y], [c, d, z, _]) = (sampler.next4(), sampler.next4());
+    let ([a, b, c, d], [x, y, z, _]) = (sampler.next4(), sampler.next4());
     let all = world.lights().sky_up() + plane.lamps();
     let (from_sky, sky_rays) = plane.blocked_sky(Vec2::new(a, b), Vec2::new(c, d));
     let (from_lamps, lamp_rays) = plane.blocked_lamp(Vec3::new(x, y, z));
@@ -99,32 +100,39 @@ impl Plane<'_> {
         (blocked, rays)
     }
 
-    /// Irradiance of all lamps, shadows left aside; those with a size by a grid of directions.
-    fn lamps(&self) -> Vec3 {
-        let of = |light: &Light| {
-            if light.kind.is_sharp() {
-                let lamp = lamps::at(light, self.point);
-                return lamp.irradiance * lamp.direction.y.max(0.0);
-            }
-            let cell = |i: u32| Vec2::new((i % GRID) as f32 + 0.5, (i / GRID) as f32 + 0.5) / GRID as f32;
-            let drawn = (0..GRID * GRID).filter_map(|i| shapes::sample(light, self.point, cell(i)));
-            let sum: f32 = drawn.map(|drawn| drawn.direction.y.max(0.0) / drawn.pdf).sum();
-            shapes::radiance(light) * sum / (GRID * GRID) as f32
-        };
-        self.world.scene().lights.iter().map(of).sum()
+    /// The ground as it receives light: no instance, so that all lamps light it.
+    fn receiver(&self) -> Receiver {
+        Receiver { position: self.point, instance: u32::MAX }
     }
 
-    /// Irradiance of the lamps that surfaces block, by a direction to one of them.
+    /// Irradiance of all lamps, shadows left aside.
+    fn lamps(&self) -> Vec3 {
+        self.world.scene().lights.iter().map(|light| self.lamp(light)).sum()
+    }
+
+    /// Irradiance of a lamp; of one with a size by points spread evenly over what is seen of it.
+    fn lamp(&self, light: &Light) -> Vec3 {
+        if light.kind.is_sharp() {
+            let lamp = lamps::at(light, self.point);
+            return lamp.irradiance * lamp.direction.y.max(0.0);
+        }
+        let n = SHAPE_POINTS;
+        let points = (0..n * n).map(|i| Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32);
+        let drawn = points.filter_map(|u| shapes::sample(light, self.point, u));
+        let sum: f32 = drawn.map(|drawn| drawn.direction.y.max(0.0) / drawn.pdf).filter(|v| v.is_finite()).sum();
+        shapes::radiance(light) * sum / (n * n) as f32
+    }
+
+    /// Irradiance of the lamps that surfaces block, by one of them; its x and y are for the place on it.
     fn blocked_lamp(&self, u: Vec3) -> (Vec3, u32) {
-        let lights = &self.world.scene().lights;
-        let receiver = Receiver { position: self.point, instance: u32::MAX };
+        let (lights, receiver) = (&self.world.scene().lights, self.receiver());
         let total = lamps::total(lights, receiver);
-        let Some(lamp) = lamps::sample(lights, receiver, total, u) else { return (Vec3::ZERO, 0) };
-        let light = lamp.weight * lamp.direction.y.max(0.0);
-        if light == Vec3::ZERO || !lights[lamp.lamp].shadows {
+        let Some(drawn) = lamps::sample(lights, receiver, total, u) else { return (Vec3::ZERO, 0) };
+        let light = drawn.weight * drawn.direction.y.max(0.0);
+        if light == Vec3::ZERO || !lights[drawn.lamp].shadows {
             return (Vec3::ZERO, 0);
         }
-        let blocked = self.is_blocked(lamp.direction, end_before(lamp.distance));
+        let blocked = self.is_blocked(drawn.direction, end_before(drawn.distance));
         (if blocked { light } else { Vec3::ZERO }, 1)
     }
 }

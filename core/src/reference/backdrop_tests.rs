@@ -83,6 +83,25 @@ fn the_sun_throws_the_share_of_its_light() {
 }
 
 #[test]
+fn lamps_with_a_size_throw_their_share_and_those_without_shadows_none() {
+    // Alone in the dark, above the plate: all of it is hidden, or a part from beside.
+    let kinds = [
+        LightKind::Rectangle { across: Vec3::X, size: Vec2::splat(1.0) },
+        LightKind::Sphere { radius: 0.4 },
+        LightKind::Directional { angular_radius: 0.05 },
+    ];
+    for kind in kinds {
+        let lamp = Light { kind, position: Vec3::new(0.0, 2.0, 0.0), direction: Vec3::NEG_Y, ..Light::default() };
+        let of =
+            |shadows: bool, at: Vec3| left(&scene(even(1e-6), vec![Light { shadows, ..lamp.clone() }]), at, 1 << 12);
+        let (hidden, open) = (of(true, Vec3::ZERO), of(false, Vec3::ZERO));
+        assert!(hidden.abs() < 5e-3 && (open - 1.0).abs() < 5e-3, "{kind:?}: {hidden} {open}");
+        let far = of(true, Vec3::new(0.0, 0.0, 9.0));
+        assert!((far - 1.0).abs() < 5e-3 || !matches!(kind, LightKind::Directional { .. }), "{kind:?}: {far}");
+    }
+}
+
+#[test]
 fn without_a_catcher_nothing_is_cast_and_the_sky_is_as_it_was() {
     let mut plain = Scene::clone(&scene(even(0.7), Vec::new()));
     let world = |scene: &Scene| World::new(&Arc::new(scene.clone()), Options::default());

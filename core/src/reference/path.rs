@@ -83,10 +83,9 @@ impl Path<'_> {
             let hit = world.closest(&ray, sight, salt);
             self.meet_lamps(&drawn, &ray, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
             let Some(hit) = hit else {
-                if self.surfaces == 0 {
-                    self.background(&ray)
-                } else {
-                    self.escape(&drawn, ray.direction)
+                match self.surfaces {
+                    0 => self.background(&ray),
+                    _ => self.escape(&drawn, ray.direction),
                 }
                 return first;
             };
@@ -138,6 +137,7 @@ impl Path<'_> {
         self.rays += seen.rays;
         self.add(self.waves.of_rgb(seen.radiance), Source::Environment);
         if seen.shadow != Vec3::ZERO {
+            // Whatever the lights that are blocked: it is their absence from the picture of the ground.
             self.add(-self.waves.of_rgb(seen.shadow), Source::Environment);
         }
     }

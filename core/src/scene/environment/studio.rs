@@ -207,7 +207,7 @@ mod tests {
         // Of a rectangle at distance 1 with half sides a, b: 4 atan(a b / sqrt(1 + a^2 + b^2)).
         let a = 0.3f64.tan();
         let wanted = 100.0 * 4.0 * (a * a / (1.0 + 2.0 * a * a).sqrt()).atan();
-        for (azimuth, elevation, roll) in [(0.0, 0.0, 0.0), (1.0, 0.7, 0.3), (-2.0, 1.5708, 0.9), (3.1, -1.2, 0.0)] {
+        for (azimuth, elevation, roll) in [(0.0, 0.0, 0.0), (1.0, 0.7, 0.3), (-2.0, 1.57, 0.9), (3.1, -1.2, 0.0)] {
             let found = power(&painted(SoftBox { azimuth, elevation, roll, ..square() }));
             assert!((found / wanted - 1.0).abs() < 5e-3, "{azimuth} {elevation}: {found} {wanted}");
         }

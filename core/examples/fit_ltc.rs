@@ -1,7 +1,7 @@
 //! Makes `core/src/lighting/area/cosines.f32`: `cargo run -p burnish-core --example fit_ltc -- FILE`.
 
-use burnish_core::lighting::area::fit;
 use burnish_core::lighting::area::NODES;
+use burnish_core::lighting::area::fit;
 use burnish_core::surface::ggx::Masking;
 use rayon::prelude::*;
 

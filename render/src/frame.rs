@@ -140,8 +140,8 @@ fn view_data(
         prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
         source_count: maps.source_count,
         wide_alpha: maps.wide_alpha,
-        pad0: 0,
-        pad1: 0,
+        contribution: 0,
+        unlit_words: shadows.unlit_words,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{area, classical};
 use burnish_core::surface::{fresnel, layered, micro_normal};
 
 /// A shader module, joined from leaves and the pass's own files.
@@ -19,6 +19,8 @@ const TYPES: &str = include_str!("layout/types.wgsl");
 const TEXEL: &str = include_str!("pass/gbuffer/texel.wgsl");
 const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
 const SHADE: &str = include_str!("pass/classical/shade.wgsl");
+const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
+const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 
 /// Fills the G-buffer.
 pub static GBUFFER: Shader = Shader {
@@ -44,15 +46,15 @@ pub static ENVIRONMENT: Shader = Shader {
 /// Lights the G-buffer.
 pub static CLASSICAL: Shader = Shader {
     name: "classical",
-    leaves: &[&classical::WGSL],
-    files: &[TYPES, TEXEL, SCENE_BINDINGS, SHADE, include_str!("pass/classical/classical.wgsl")],
+    leaves: &[&classical::WGSL, &area::WGSL],
+    files: &[TYPES, TEXEL, SCENE_BINDINGS, SHADE, LAMPS, SOFT, include_str!("pass/classical/classical.wgsl")],
 };
 
 /// Blended surfaces.
 pub static FORWARD: Shader = Shader {
     name: "forward",
-    leaves: &[&classical::WGSL, &micro_normal::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
+    leaves: &[&classical::WGSL, &area::WGSL, &micro_normal::WGSL],
+    files: &[TYPES, TEXEL, RESOLVE, SHADE, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
 };
 
 /// Adds a frame to the sum.

@@ -91,7 +91,8 @@ pub(super) fn angle(sin: f32, cos: f32) -> f32 {
     let (low, high) = (sin.min(cos.abs()), sin.max(cos.abs()));
     let x = low / high.max(1e-30);
     let x2 = x * x;
-    let tail = 0.106_562_64 + x2 * (-0.075_289_64 + x2 * (0.042_909_613 + x2 * (-0.016_165_737 + x2 * 0.002_866_225_7)));
+    let tail =
+        0.106_562_64 + x2 * (-0.075_289_64 + x2 * (0.042_909_613 + x2 * (-0.016_165_737 + x2 * 0.002_866_225_7)));
     let acute = x * (1.0 + x2 * (-0.333_331_45 + x2 * (0.199_935_51 + x2 * (-0.142_089 + x2 * tail))));
     let first = if sin > cos.abs() { FRAC_PI_2 - acute } else { acute };
     if cos < 0.0 { PI - first } else { first }

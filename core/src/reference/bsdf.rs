@@ -114,6 +114,20 @@ impl<'a> Bsdf<'a> {
         (value, pdf)
     }
 
+    /// Response of the matte base alone with its cosine, through the coat: what is left of light that reflections leave out.
+    pub(super) fn eval_matte(&self, wi: Vec3) -> Vec3 {
+        let (s, local) = (&self.surface, self.base.to_local(wi));
+        if wi.dot(self.geometric) <= 0.0 || local.z <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut value = self.spread.eval_matte(s, local) * local.z;
+        if s.coat > 0.0 {
+            let coat_wi = self.coat.to_local(wi);
+            value *= self.passed_o * coat::transmission(coat_wi, s.coat_alpha, s.coat, s.masking);
+        }
+        value
+    }
+
     /// A direction; `u` in `[0, 1)^3`, its z chooses the lobe. `None` where the light ends.
     pub(super) fn sample(&self, u: Vec3) -> Option<BsdfSample> {
         let (s, Chances { coat, glossy, spread }) = (&self.surface, self.chances);

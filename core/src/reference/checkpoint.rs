@@ -21,7 +21,7 @@ pub const KIND: Kind = Kind { id: "reference-checkpoint", version: 1 };
 
 /// Raised when the same scene, view, settings and seed give other samples than before, so that a film is not continued
 /// with samples of another program.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Largest file that is read: that of the largest picture.
 const MAX_BYTES: u64 = 4 << 30;
@@ -45,6 +45,8 @@ pub struct Key {
     clamp: String,
     masking: String,
     multiple_scattering: bool,
+    /// Whose light is shown.
+    contribution: String,
     /// Hash of the metals when wavelengths are traced.
     wavelengths: Option<String>,
 }
@@ -74,7 +76,7 @@ impl Key {
     pub fn new(world: &World, view: &View) -> Key {
         let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(world.scene());
         let View { camera, size, seed } = view;
-        let Options { bounces, clamp, masking, multiple_scattering } = *world.options();
+        let Options { bounces, clamp, masking, multiple_scattering, contribution } = *world.options();
         Key {
             revision: REVISION,
             geometry: geometry.to_string(),
@@ -89,6 +91,7 @@ impl Key {
             clamp: clamp.to_string(),
             masking: masking_word(masking).into(),
             multiple_scattering,
+            contribution: contribution.word(),
             wavelengths: world.wavelengths().map(hash_of_metals),
         }
     }
@@ -119,6 +122,7 @@ impl Key {
         word("clamp", self.clamp.clone(), file.clamp.clone());
         word("masking", self.masking.clone(), file.masking.clone());
         word("multiple scattering", switch(self.multiple_scattering), switch(file.multiple_scattering));
+        word("light shown", self.contribution.clone(), file.contribution.clone());
         word("wavelengths", switch(self.wavelengths.is_some()), switch(file.wavelengths.is_some()));
         word("revision of the path tracer", self.revision.to_string(), file.revision.to_string());
         if let (Some(here), Some(there)) = (&self.wavelengths, &file.wavelengths)

@@ -83,7 +83,13 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     assert!(text.contains("the size (19x18 there, 18x19 here), the seed (7 there, 8 here);"), "{text}");
     let text = refused(&scene, &options, &View { camera: Camera::look_at("a", Vec3::X, Vec3::ZERO, 0.5), ..view() });
     assert!(text.contains("the camera;"), "{text}");
-    let changed = Options { bounces: 1, clamp: 10.0, masking: Masking::Separable, multiple_scattering: false };
+    let changed = Options {
+        bounces: 1,
+        clamp: 10.0,
+        masking: Masking::Separable,
+        multiple_scattering: false,
+        contribution: crate::reference::Contribution::Emission,
+    };
     let text = refused(&scene, &changed, &view());
     for part in [
         "the bounces (64 there, 1 here)",
@@ -105,7 +111,7 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     assert!(text.contains("what differs: the wavelengths (on there, off here);"), "{text}");
     let older = Key { revision: 0, ..key() };
     write(&file, &Film::new(view().size), &older).unwrap();
-    assert!(read(&file, &key()).unwrap_err().to_string().contains("revision of the path tracer (0 there, 1 here)"));
+    assert!(read(&file, &key()).unwrap_err().to_string().contains("revision of the path tracer (0 there, 2 here)"));
 }
 
 #[test]

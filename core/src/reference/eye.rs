@@ -3,9 +3,9 @@
 use glam::{UVec2, Vec2, Vec3};
 
 use super::bsdf::Bsdf;
-use super::lamps;
-use super::lights::{End, Kind};
-use super::path::{balance, shadow_ray};
+use super::lamps::{self, Receiver};
+use super::lights::{Kind, Lights, Rates};
+use super::path::{balance, casts_shadows, received, shadow_ray};
 use super::point::{Point, Triangle};
 use super::sampler::PathSampler;
 use super::texture::lookup;
@@ -13,6 +13,8 @@ use super::waves::Waves;
 use super::world::{Sight, World};
 use super::{PathSample, View};
 use crate::math::frame::Frame;
+use crate::math::sampling::{pcg, unit};
+use crate::scene::LightKind;
 use crate::surface::layered::Surface;
 use crate::trace::{Hit, Ray, offset};
 
@@ -60,9 +62,16 @@ impl<'a> Eye<'a> {
         self.sampler.next4()
     }
 
-    /// The sky along the ray.
+    /// Radiance of the lamps that the eye sees as shapes along the ray, before the surface that it meets.
+    pub fn lamps_seen(&self) -> Vec3 {
+        let distance = self.hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
+        let met = Lights::met(self.world.scene(), self.ray.origin, self.ray.direction);
+        met.filter(|met| met.light.camera && met.is_open(distance)).map(|met| met.radiance).sum()
+    }
+
+    /// The sky along the ray, and lamps before it.
     pub fn miss(&self) -> PathSample {
-        let radiance = self.world.lights().sky(self.ray.direction);
+        let radiance = self.world.lights().sky(self.ray.direction) + self.lamps_seen();
         PathSample { radiance, clamped: Vec3::ZERO, first: None, rays: 1 }
     }
 }
@@ -144,27 +153,69 @@ impl SurfacePoint<'_> {
         self.world.lights().sky(direction)
     }
 
-    /// Direct light of the lamps, of one drawn by `random`, with its shadow; and the rays that were cast.
+    /// Direct light of the lamps of all kinds, of one drawn by `random` and of those that a direction from the surface meets,
+    /// with their shadows; and the rays that were cast.
     pub fn lamps(&self, random: [f32; 4]) -> (Vec3, u32) {
-        let [x, y, z, _] = random;
-        let (lights, scene) = (self.world.lights(), self.world.scene());
-        let Some(sample) = lights.sample(scene, self.point.position, Kind::Lamps, 1.0, Vec3::new(x, y, z)) else {
-            return (Vec3::ZERO, 0);
-        };
-        let light = self.response(sample.direction) * sample.weight;
-        if light == Vec3::ZERO || !matches!(sample.end, End::Distance(_)) {
-            return (Vec3::ZERO, 0);
-        }
-        let seen = !self.world.occluded(&shadow_ray(&self.point, &sample), self.salt);
-        (if seen { light } else { Vec3::ZERO }, 1)
+        self.drawn_lamps(random, |_| true)
     }
 
-    /// Direct light of all punctual lights, each with its shadow.
+    /// [`SurfacePoint::lamps`] of those that are not sharp: rectangles, spheres and suns with an angle.
+    pub fn wide_lamps(&self, random: [f32; 4]) -> (Vec3, u32) {
+        self.drawn_lamps(random, |kind| !kind.is_sharp())
+    }
+
+    fn drawn_lamps(&self, [x, y, z, w]: [f32; 4], wanted: impl Fn(LightKind) -> bool) -> (Vec3, u32) {
+        let (world, receiver, bsdf) = (self.world, self.receiver(), self.bsdf());
+        let scene = world.scene();
+        let rates = Rates::of_lamps(scene, receiver);
+        let (mut light, mut rays) = (Vec3::ZERO, 0);
+        let drawn = world.lights().sample(scene, receiver, Kind::Lamps, &rates, Vec3::new(x, y, z));
+        if let Some(sample) = drawn.filter(|sample| sample.lamp(scene).is_some_and(|lamp| wanted(lamp.kind))) {
+            let one = received(world, &bsdf, &sample) * sample.weight;
+            if one != Vec3::ZERO {
+                let shadows = casts_shadows(world, &sample);
+                rays += u32::from(shadows);
+                let is_dark = shadows && world.occluded(&shadow_ray(&self.point, &sample), self.salt);
+                light += if is_dark { Vec3::ZERO } else { one };
+            }
+        }
+        if scene.lights.iter().all(|lamp| lamp.kind.is_sharp()) {
+            return (light, rays);
+        }
+        // Numbers of its own for the surface, made of those for the light.
+        let again = |v: f32, i: u32| unit(pcg(pcg(v.to_bits()).wrapping_add(pcg(w.to_bits().wrapping_add(i)))));
+        let u = Vec3::new(again(x, 1), again(y, 2), again(z, 3));
+        let Some(drawn) = bsdf.sample(u) else { return (light, rays) };
+        let origin = offset(self.point.position, self.point.rounding, self.point.geometric, drawn.wi);
+        let ray = Ray { origin, direction: drawn.wi, t_max: f32::INFINITY };
+        let mut met = Lights::met(scene, origin, drawn.wi).filter(|met| met.light.reflections).peekable();
+        if met.peek().is_none() {
+            return (light, rays);
+        }
+        rays += 1;
+        let distance = world.closest(&ray, Sight::Light, self.salt).map_or(f32::INFINITY, |hit| hit.t);
+        for met in met.filter(|met| met.light.lights(receiver.instance as usize) && wanted(met.light.kind)) {
+            if !met.light.shadows || met.is_open(distance) {
+                let weight = balance(drawn.pdf, || Lights::lamp_pdf(&rates, receiver, &met, drawn.wi));
+                light += weight * drawn.weight * met.radiance;
+            }
+        }
+        (light, rays)
+    }
+
+    /// Direct light of all sharp lamps (points, spots, suns without an angle), each with its shadow.
     pub fn punctual(&self) -> Vec3 {
-        let lights = self.world.scene().lights.iter();
-        let lit = lights.map(|light| lamps::at(light, self.point.position)).map(|lamp| {
-            let light = self.response(lamp.direction) * lamp.irradiance;
-            if light != Vec3::ZERO && self.sees(lamp.direction, lamp.distance) { light } else { Vec3::ZERO }
+        let scene = self.world.scene();
+        let lights = scene.lights.iter().filter(|l| l.kind.is_sharp() && l.lights(self.hit.instance as usize));
+        let bsdf = self.bsdf();
+        let lit = lights.map(|light| {
+            let lamp = lamps::at(light, self.point.position);
+            let response =
+                if light.reflections { bsdf.eval(lamp.direction).0 } else { bsdf.eval_matte(lamp.direction) };
+            let is_seen =
+                |value: Vec3| value != Vec3::ZERO && (!light.shadows || self.sees(lamp.direction, lamp.distance));
+            let value = response * lamp.irradiance;
+            if is_seen(value) { value } else { Vec3::ZERO }
         });
         lit.sum()
     }
@@ -182,7 +233,7 @@ impl SurfacePoint<'_> {
     pub fn environment(&self, [for_light, for_surface]: [[f32; 4]; 2]) -> Vec3 {
         let (lights, scene, bsdf) = (self.world.lights(), self.world.scene(), self.bsdf());
         let three = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
-        let drawn = lights.sample(scene, self.point.position, Kind::Sky, 1.0, three(for_light));
+        let drawn = lights.sample(scene, self.receiver(), Kind::Sky, &Rates::ONE_EACH, three(for_light));
         let mut light = drawn.map_or(Vec3::ZERO, |drawn| {
             let (value, pdf) = bsdf.eval(drawn.direction);
             value * drawn.weight * drawn.pdf / (drawn.pdf + pdf)
@@ -192,6 +243,10 @@ impl SurfacePoint<'_> {
             light += drawn.weight * radiance * balance(drawn.pdf, || pdf);
         }
         light
+    }
+
+    fn receiver(&self) -> Receiver {
+        Receiver { position: self.point.position, instance: self.hit.instance }
     }
 
     fn bsdf(&self) -> Bsdf<'_> {

@@ -1,7 +1,8 @@
-//! Punctual lights: no size, so only drawing them on purpose meets them.
+//! Lamps: light of sharp ones at a point, and one drawn of all.
 
 use glam::Vec3;
 
+use super::shapes;
 use crate::scene::{Light, LightKind};
 
 /// Least distance to a lamp in metres: one that lies on a surface must not divide by zero.
@@ -38,28 +39,82 @@ pub(super) fn at(light: &Light, position: Vec3) -> LampLight {
     LampLight { direction, distance, irradiance: light.intensity * factor }
 }
 
-/// One lamp, chosen by its light at the point before shadows, with the chance of that choice; `u` in [0, 1).
-pub(super) fn choose(lights: &[Light], position: Vec3, u: f32) -> Option<(LampLight, f32)> {
-    let brightness = |light: &Light| at(light, position).irradiance.element_sum();
-    let total: f32 = lights.iter().map(brightness).sum();
-    let mut left = u * total;
+/// A point that light comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Receiver {
+    /// World, metres.
+    pub position: Vec3,
+    /// Index into `Scene::instances`.
+    pub instance: u32,
+}
+
+/// Light of one lamp toward a receiver, shadows aside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LampSample {
+    /// Index into `Scene::lights`.
+    pub lamp: usize,
+    /// Unit, toward the lamp.
+    pub direction: Vec3,
+    /// Metres; infinite for suns.
+    pub distance: f32,
+    /// Irradiance of a sharp lamp or radiance over density, each over the chance of the lamp.
+    pub weight: Vec3,
+    /// Per steradian, with the chance of the lamp; infinite for sharp ones.
+    pub pdf: f32,
+}
+
+/// About the irradiance of a lamp at a receiver, of all channels: never zero where it may shine.
+fn guess(light: &Light, receiver: Receiver) -> f32 {
+    if !light.lights(receiver.instance as usize) {
+        return 0.0;
+    }
+    if light.kind.is_sharp() {
+        return at(light, receiver.position).irradiance.element_sum();
+    }
+    let angle = shapes::solid_angle(light, receiver.position);
+    if angle > 0.0 { angle * shapes::radiance(light).element_sum() } else { 0.0 }
+}
+
+/// The sum of the guesses, by which lamps are chosen.
+pub(super) fn total(lights: &[Light], receiver: Receiver) -> f32 {
+    lights.iter().map(|light| guess(light, receiver)).sum()
+}
+
+/// Light of one lamp, chosen by its guess; `total` is that of [`total`], `u` in `[0, 1)^3`, its z chooses.
+pub(super) fn sample(lights: &[Light], receiver: Receiver, total: f32, u: Vec3) -> Option<LampSample> {
+    let mut left = u.z * total;
     let mut last = None;
-    for light in lights {
-        let weight = brightness(light);
+    for (lamp, light) in lights.iter().enumerate() {
+        let weight = guess(light, receiver);
         if weight > 0.0 {
-            last = Some((at(light, position), weight / total));
+            last = Some((lamp, weight / total));
             if left < weight {
                 break;
             }
         }
         left -= weight;
     }
-    last.filter(|(_, chance)| *chance > 0.0 && chance.is_finite())
+    let (lamp, chance) = last.filter(|(_, chance)| *chance > 0.0 && chance.is_finite())?;
+    let light = &lights[lamp];
+    if light.kind.is_sharp() {
+        let LampLight { direction, distance, irradiance } = at(light, receiver.position);
+        return Some(LampSample { lamp, direction, distance, weight: irradiance / chance, pdf: f32::INFINITY });
+    }
+    let drawn = shapes::sample(light, receiver.position, u.truncate())?;
+    let pdf = chance * drawn.pdf;
+    // A chance so small that the density vanishes is none.
+    let weight = shapes::radiance(light) / pdf;
+    weight.is_finite().then_some(LampSample { lamp, direction: drawn.direction, distance: drawn.distance, weight, pdf })
 }
 
-/// About the irradiance at a point, for choosing among kinds of light.
-pub(super) fn weight(lights: &[Light], position: Vec3) -> f32 {
-    lights.iter().map(|light| at(light, position).irradiance.element_sum() / 3.0).sum()
+/// Density with which [`sample`] draws a direction that meets a lamp after `distance`.
+pub(super) fn pdf(light: &Light, receiver: Receiver, total: f32, direction: Vec3, distance: f32) -> f32 {
+    let guess = guess(light, receiver);
+    if guess <= 0.0 {
+        return 0.0;
+    }
+    let pdf = guess / total * shapes::pdf(light, receiver.position, direction, distance);
+    if pdf.is_finite() { pdf } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -92,19 +147,70 @@ mod tests {
         assert_eq!((light.direction, light.irradiance.x, light.distance), (Vec3::Y, 3.0, f32::INFINITY));
     }
 
+    fn receiver(position: Vec3) -> Receiver {
+        Receiver { position, instance: 0 }
+    }
+
     #[test]
     fn lamps_are_chosen_by_their_light() {
         let lights =
             [lamp(LightKind::Point, 0.0, 1.0), lamp(LightKind::Point, 0.0, 0.0), lamp(LightKind::Point, 4.0, 10.0)];
         let mut random = Random::new(1);
         let (mut sum, n) = (0.0, 20_000);
+        let here = receiver(Vec3::ZERO);
         for _ in 0..n {
-            let (light, chance) = choose(&lights, Vec3::ZERO, random.unit()).unwrap();
-            sum += f64::from(light.irradiance.x / chance);
+            let drawn = sample(&lights, here, total(&lights, here), random.point3()).unwrap();
+            sum += f64::from(drawn.weight.x);
         }
         let want: f32 = lights.iter().map(|l| at(l, Vec3::ZERO).irradiance.x).sum();
         assert!((sum / f64::from(n) / f64::from(want) - 1.0).abs() < 1e-4);
-        assert_eq!(choose(&[], Vec3::ZERO, 0.5), None);
-        assert_eq!(choose(&lights[1..2], Vec3::ZERO, 0.5), None);
+        assert_eq!(sample(&[], here, 0.0, Vec3::splat(0.5)), None);
+        assert_eq!(sample(&lights[1..2], here, 0.0, Vec3::splat(0.5)), None);
+    }
+
+    #[test]
+    fn a_lamp_is_not_drawn_where_it_does_not_shine() {
+        let lights =
+            [Light { unlit: vec![0], ..lamp(LightKind::Point, 0.0, 1.0) }, lamp(LightKind::PARALLEL, 0.0, 1.0)];
+        let mut random = Random::new(1);
+        for (instance, want) in [(0, 1), (1, 2)] {
+            let here = Receiver { instance, ..receiver(Vec3::ZERO) };
+            let draw = |_| sample(&lights, here, total(&lights, here), random.point3()).map(|drawn| drawn.lamp);
+            let drawn: std::collections::BTreeSet<_> = (0..64).map(draw).collect();
+            assert_eq!(drawn.len(), want);
+        }
+    }
+
+    #[test]
+    fn lamps_of_all_kinds_are_finite_everywhere() {
+        let rectangle = |size| LightKind::Rectangle { across: Vec3::X, size };
+        let kinds = [
+            LightKind::Point,
+            LightKind::Spot { inner_angle: 0.0, outer_angle: 1e-3 },
+            LightKind::PARALLEL,
+            LightKind::Directional { angular_radius: 2e-4 },
+            rectangle(glam::Vec2::ONE),
+            rectangle(glam::Vec2::new(1e-20, 1.0)),
+            rectangle(glam::Vec2::splat(1e6)),
+            LightKind::Sphere { radius: 0.0 },
+            LightKind::Sphere { radius: 1e-18 },
+            LightKind::Sphere { radius: 1e6 },
+        ];
+        for kind in kinds {
+            for intensity in [0.0, 1.0, 1e9] {
+                let light = lamp(kind, 0.0, intensity);
+                let steps = [0.0, 1e-30, 1e-7, 1e-3, 1.0, 1e4];
+                for at in steps.iter().flat_map(|s| [Vec3::X, Vec3::NEG_Y, Vec3::ONE].map(|d| light.position + d * *s))
+                {
+                    let here = receiver(at);
+                    let lights = std::slice::from_ref(&light);
+                    let sum = total(lights, here);
+                    assert!(sum.is_finite() && sum >= 0.0, "{kind:?} {at}: {sum}");
+                    let Some(drawn) = sample(lights, here, sum, Vec3::new(0.3, 0.6, 0.5)) else { continue };
+                    assert!(drawn.direction.is_finite() && drawn.weight.is_finite(), "{kind:?} {at}: {drawn:?}");
+                    assert!(drawn.pdf > 0.0 && intensity > 0.0, "{kind:?} {at}: {drawn:?}");
+                }
+            }
+        }
     }
 }

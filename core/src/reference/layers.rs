@@ -39,7 +39,7 @@ impl Film {
     }
 
     fn attributes(&self, world: &World, view: &View) -> Vec<(&'static str, Attribute)> {
-        let Options { bounces, clamp, masking, multiple_scattering } = *world.options();
+        let Options { bounces, clamp, masking, multiple_scattering, contribution: _ } = *world.options();
         let switch = |on: bool| Attribute::Text(if on { "on" } else { "off" }.into());
         let whole = |value: u32| Attribute::Whole(i32::try_from(value).unwrap_or(i32::MAX));
         vec![

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::emitters::Emitters;
-use super::lamps;
+use super::lamps::{self, Receiver};
 use super::point::Point;
+use super::shapes;
 use super::sky::Sky;
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use crate::trace::Hit;
 
 /// Least chance of a kind of light, so that none is lost where the guess at its share is wrong.
@@ -30,8 +31,52 @@ pub(super) struct LightSample {
     pub end: End,
     /// Radiance over density and rate, or irradiance of a lamp over the rate at which it is drawn.
     pub weight: Vec3,
-    /// Density per steradian times the rate; infinite for lamps.
+    /// Density per steradian times the rate; infinite for sharp lamps.
     pub pdf: f32,
+    /// Where it comes from.
+    pub source: Source,
+}
+
+impl LightSample {
+    /// The lamp that it comes from, if it does.
+    pub(super) fn lamp<'a>(&self, scene: &'a Scene) -> Option<&'a Light> {
+        let Source::Lamp(lamp) = self.source else { return None };
+        scene.lights.get(lamp)
+    }
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    Environment,
+    Emission,
+    /// Index into `Scene::lights`.
+    Lamp(usize),
+}
+
+/// A lamp with a size that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met<'a> {
+    /// Index into `Scene::lights`.
+    pub lamp: usize,
+    /// The lamp.
+    pub light: &'a Light,
+    /// Metres along the ray; infinite for suns.
+    pub distance: f32,
+    /// Along the ray, not zero.
+    pub radiance: Vec3,
+}
+
+impl Met<'_> {
+    /// No surface after `distance` metres stands in its way: as near to the lamp as rays to lamps go.
+    pub(super) fn is_open(&self, distance: f32) -> bool {
+        end_before(self.distance) < distance || distance.is_infinite()
+    }
+}
+
+/// Where a ray to a lamp ends: a lamp that lies on a surface is not hidden by it.
+pub(super) fn end_before(distance: f32) -> f32 {
+    distance * (1.0 - 1e-4)
 }
 
 /// Where a ray to a light ends.
@@ -64,14 +109,26 @@ impl Kind {
 
 /// How many samples each kind gets at a point, in the mean: one each or one in all.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rates([f32; 3]);
+pub(super) struct Rates {
+    of_kinds: [f32; 3],
+    /// By which a lamp is chosen, [`lamps::total`].
+    lamps: f32,
+}
 
 impl Rates {
     /// None at all.
-    pub(super) const NONE: Rates = Rates([0.0; 3]);
+    pub(super) const NONE: Rates = Rates { of_kinds: [0.0; 3], lamps: 0.0 };
+
+    /// One of each, for light that does not need to know the lamps.
+    pub(super) const ONE_EACH: Rates = Rates { of_kinds: [1.0; 3], lamps: 0.0 };
+
+    /// One of the lamps.
+    pub(super) fn of_lamps(scene: &Scene, receiver: Receiver) -> Rates {
+        Rates { of_kinds: [0.0, 0.0, 1.0], lamps: lamps::total(&scene.lights, receiver) }
+    }
 
     pub(super) fn of(&self, kind: Kind) -> f32 {
-        self.0[kind as usize]
+        self.of_kinds[kind as usize]
     }
 
     /// For rates that sum to one: a kind by its rate, and what is left of `u` in [0, 1).
@@ -110,38 +167,47 @@ impl Lights {
     }
 
     /// The rates at a point: one sample of each kind that there is, or one by a guess at their irradiance.
-    pub(super) fn rates(&self, scene: &Scene, position: Vec3, each: bool) -> Rates {
+    pub(super) fn rates(&self, scene: &Scene, receiver: Receiver, each: bool) -> Rates {
         let sky = self.sky.as_ref().filter(|sky| sky.is_sampled());
         let sky = sky.map_or(0.0, |sky| std::f32::consts::PI * sky.mean().element_sum() / 3.0);
-        let emitters = if self.emitters.is_empty() { 0.0 } else { self.emitters.weight(position) };
-        let lamps = if scene.lights.is_empty() { 0.0 } else { lamps::weight(&scene.lights, position) };
-        let weights = [sky, emitters, lamps];
+        let emitters = if self.emitters.is_empty() { 0.0 } else { self.emitters.weight(receiver.position) };
+        let lamps = lamps::total(&scene.lights, receiver);
+        let weights = [sky, emitters, lamps / 3.0];
         if each {
-            return Rates(weights.map(|weight| if weight > 0.0 { 1.0 } else { 0.0 }));
+            return Rates { of_kinds: weights.map(|weight| if weight > 0.0 { 1.0 } else { 0.0 }), lamps };
         }
         let active = weights.iter().filter(|weight| **weight > 0.0).count() as f32;
         let sum: f32 = weights.iter().sum();
         let chance = |weight: f32| {
             if weight > 0.0 { LEAST_CHANCE + (1.0 - active * LEAST_CHANCE) * weight / sum } else { 0.0 }
         };
-        Rates(weights.map(chance))
+        Rates { of_kinds: weights.map(chance), lamps }
     }
 
     /// Light of a kind to a point, for its rate; `u` in `[0, 1)^3`. `None` where none is found.
-    pub(super) fn sample(&self, scene: &Scene, position: Vec3, kind: Kind, rate: f32, u: Vec3) -> Option<LightSample> {
+    pub(super) fn sample(
+        &self,
+        scene: &Scene,
+        receiver: Receiver,
+        kind: Kind,
+        rates: &Rates,
+        u: Vec3,
+    ) -> Option<LightSample> {
+        let rate = rates.of(kind);
         match kind {
             Kind::Sky => {
                 let sample = self.sky.as_ref()?.sample(u.truncate())?;
                 let (direction, pdf) = (sample.direction, rate * sample.pdf);
                 let weight = sample.radiance / pdf;
-                Some(LightSample { direction, end: End::Distance(f32::INFINITY), weight, pdf })
+                let (end, source) = (End::Distance(f32::INFINITY), Source::Environment);
+                Some(LightSample { direction, end, weight, pdf, source })
             }
-            Kind::Emitters => self.sample_emitters(scene, position, rate, u),
+            Kind::Emitters => self.sample_emitters(scene, receiver.position, rate, u),
             Kind::Lamps => {
-                let (light, chance) = lamps::choose(&scene.lights, position, u.z)?;
-                let weight = light.irradiance / (chance * rate);
-                let end = End::Distance(light.distance);
-                Some(LightSample { direction: light.direction, end, weight, pdf: f32::INFINITY })
+                let drawn = lamps::sample(&scene.lights, receiver, rates.lamps, u)?;
+                let (weight, pdf) = (drawn.weight / rate, drawn.pdf * rate);
+                let (end, source) = (End::Distance(drawn.distance), Source::Lamp(drawn.lamp));
+                Some(LightSample { direction: drawn.direction, end, weight, pdf, source })
             }
         }
     }
@@ -151,12 +217,26 @@ impl Lights {
         let pdf = rate * sample.pdf;
         let direction = (sample.point - position).normalize();
         let end = End::Surface { point: sample.point, rounding: sample.rounding, normal: sample.normal };
-        Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf })
+        Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf, source: Source::Emission })
     }
 
     /// Radiance of the sky, and the density with which it is sampled, before the rate.
     pub(super) fn look(&self, direction: Vec3) -> (Vec3, f32) {
         self.sky.as_ref().map_or((Vec3::ZERO, 0.0), |sky| sky.look(direction))
+    }
+
+    /// The lamps with a size that a ray meets, behind surfaces too.
+    pub(super) fn met(scene: &Scene, origin: Vec3, direction: Vec3) -> impl Iterator<Item = Met<'_>> {
+        scene.lights.iter().enumerate().filter_map(move |(lamp, light)| {
+            let distance = shapes::meet(light, origin, direction)?;
+            let radiance = shapes::radiance(light);
+            (radiance != Vec3::ZERO).then_some(Met { lamp, light, distance, radiance })
+        })
+    }
+
+    /// Density with which a lamp is sampled that a ray from a receiver meets, with the rate.
+    pub(super) fn lamp_pdf(rates: &Rates, receiver: Receiver, met: &Met<'_>, direction: Vec3) -> f32 {
+        rates.of(Kind::Lamps) * lamps::pdf(met.light, receiver, rates.lamps, direction, met.distance)
     }
 
     /// Density with which a hit of a glowing triangle is sampled at `position`, before the rate.

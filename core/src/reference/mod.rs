@@ -17,6 +17,7 @@ mod path;
 mod point;
 mod sampler;
 mod settings;
+mod shapes;
 mod sky;
 mod texture;
 mod waves;
@@ -34,7 +35,7 @@ pub use eye::{Eye, SurfacePoint};
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};
-pub use settings::{COMPARED_PARAMS, Options, PARAMS, is_spectral};
+pub use settings::{COMPARED_PARAMS, Contribution, Options, PARAMS, is_spectral};
 pub use world::World;
 
 /// Id of the method, as documents name it.

@@ -3,7 +3,8 @@
 use glam::Vec3;
 
 use super::bsdf::Bsdf;
-use super::lights::{End, Kind, LightSample, Rates};
+use super::lamps::Receiver;
+use super::lights::{End, Kind, LightSample, Lights, Rates, Source, end_before};
 use super::point::Point;
 use super::sampler::PathSampler;
 use super::waves::Waves;
@@ -33,11 +34,24 @@ struct Path<'a> {
 /// Where and how the last direction was drawn: what the light found at its end is weighed by.
 #[derive(Clone, Copy)]
 struct Drawn {
-    position: Vec3,
+    /// None is the eye.
+    receiver: Option<Receiver>,
     /// Per steradian; infinite from the eye and from mirrors.
     pdf: f32,
     /// Samples of light at that position.
     rates: Rates,
+}
+
+impl Drawn {
+    const FROM_EYE: Drawn = Drawn { receiver: None, pdf: f32::INFINITY, rates: Rates::NONE };
+}
+
+/// A surface on the way, with the samples of light that it gets.
+struct Lit<'a> {
+    receiver: Receiver,
+    point: &'a Point<'a>,
+    bsdf: &'a Bsdf<'a>,
+    rates: &'a Rates,
 }
 
 /// Follows a path along a ray from the eye.
@@ -60,12 +74,14 @@ impl Path<'_> {
     fn follow(&mut self, mut ray: Ray) -> Option<FirstHit> {
         let world = self.world;
         let mut first = None;
-        let mut drawn = Drawn { position: ray.origin, pdf: f32::INFINITY, rates: Rates::NONE };
+        let mut drawn = Drawn::FROM_EYE;
         loop {
             let sight = if self.surfaces == 0 { Sight::Eye } else { Sight::Light };
             let salt = self.sampler.salt().wrapping_add(self.surfaces);
             self.rays += 1;
-            let Some(hit) = world.closest(&ray, sight, salt) else {
+            let hit = world.closest(&ray, sight, salt);
+            self.meet_lamps(&drawn, &ray, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
+            let Some(hit) = hit else {
                 self.escape(&drawn, ray.direction);
                 return first;
             };
@@ -76,8 +92,11 @@ impl Path<'_> {
             }
             let bsdf = Bsdf::new(world, &point, to_viewer);
             if point.emission != Vec3::ZERO {
-                let pdf = || drawn.rates.of(Kind::Emitters) * world.lights().emitter_pdf(drawn.position, &hit, &point);
-                self.add(balance(drawn.pdf, pdf) * bsdf.passed() * point.emission);
+                let pdf = || {
+                    let from = drawn.receiver.map_or(ray.origin, |receiver| receiver.position);
+                    drawn.rates.of(Kind::Emitters) * world.lights().emitter_pdf(from, &hit, &point)
+                };
+                self.add(balance(drawn.pdf, pdf) * bsdf.passed() * point.emission, Source::Emission);
             }
             if self.surfaces == 0 {
                 let (normal, albedo) = (point.base.n, self.waves.to_rgb(bsdf.albedo()));
@@ -89,18 +108,20 @@ impl Path<'_> {
             self.surfaces += 1;
             let [ux, uy, uz, choice] = self.sampler.next4();
             let mut rates = Rates::NONE;
+            let receiver = Receiver { position: point.position, instance: hit.instance };
             if bsdf.has_density() {
                 // What is seen straight, or in mirrors, is most of the picture: there it gets a sample of each kind.
                 let each = !drawn.pdf.is_finite();
-                rates = world.lights().rates(world.scene(), point.position, each);
-                if each { self.light_of_each(&point, &bsdf, &rates) } else { self.light(&point, &bsdf, &rates, choice) }
+                rates = world.lights().rates(world.scene(), receiver, each);
+                let at = Lit { receiver, point: &point, bsdf: &bsdf, rates: &rates };
+                if each { self.light_of_each(&at) } else { self.light(&at, choice) }
             }
             let Some(sample) = bsdf.sample(Vec3::new(ux, uy, uz)) else { return first };
             self.throughput *= sample.weight;
             if !self.survives() {
                 return first;
             }
-            drawn = Drawn { position: point.position, pdf: sample.pdf, rates };
+            drawn = Drawn { receiver: Some(receiver), pdf: sample.pdf, rates };
             let origin = offset(point.position, point.rounding, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
         }
@@ -115,50 +136,68 @@ impl Path<'_> {
         } else {
             lights.sky(direction)
         };
-        self.add(self.waves.of_rgb(light));
+        self.add(self.waves.of_rgb(light), Source::Environment);
+    }
+
+    /// Adds the lamps with a size that the ray meets on its way to a surface after `distance` metres.
+    fn meet_lamps(&mut self, drawn: &Drawn, ray: &Ray, distance: f32) {
+        for met in Lights::met(self.world.scene(), ray.origin, ray.direction) {
+            let light = match drawn.receiver {
+                None => met.light.camera && met.is_open(distance),
+                Some(Receiver { instance, .. }) => {
+                    let is_open = !met.light.shadows || met.is_open(distance);
+                    is_open && met.light.reflections && met.light.lights(instance as usize)
+                }
+            };
+            if light {
+                let pdf = || drawn.receiver.map_or(0.0, |at| Lights::lamp_pdf(&drawn.rates, at, &met, ray.direction));
+                let weight = balance(drawn.pdf, pdf);
+                self.add(weight * self.waves.of_rgb(met.radiance), Source::Lamp(met.lamp));
+            }
+        }
     }
 
     /// Adds a sample of every kind of light.
-    fn light_of_each(&mut self, point: &Point, bsdf: &Bsdf, rates: &Rates) {
+    fn light_of_each(&mut self, at: &Lit) {
         for kind in Kind::ALL {
-            if rates.of(kind) > 0.0 {
+            if at.rates.of(kind) > 0.0 {
                 let [x, y, z, _] = self.sampler.next4();
-                self.light_of(point, bsdf, kind, rates.of(kind), Vec3::new(x, y, z));
+                self.light_of(at, kind, Vec3::new(x, y, z));
             }
         }
     }
 
     /// Adds a sample of light, of a kind by its rate.
-    fn light(&mut self, point: &Point, bsdf: &Bsdf, rates: &Rates, choice: f32) {
+    fn light(&mut self, at: &Lit, choice: f32) {
         let [x, y, ..] = self.sampler.next4();
-        if let Some((kind, z)) = rates.choose(choice) {
-            self.light_of(point, bsdf, kind, rates.of(kind), Vec3::new(x, y, z));
+        if let Some((kind, z)) = at.rates.choose(choice) {
+            self.light_of(at, kind, Vec3::new(x, y, z));
         }
     }
 
-    fn light_of(&mut self, point: &Point, bsdf: &Bsdf, kind: Kind, rate: f32, u: Vec3) {
+    fn light_of(&mut self, at: &Lit, kind: Kind, u: Vec3) {
         let world = self.world;
-        let Some(sample) = world.lights().sample(world.scene(), point.position, kind, rate, u) else { return };
-        let (value, pdf) = bsdf.eval(sample.direction);
-        let mut light = value * self.waves.of_rgb(sample.weight);
-        if sample.pdf.is_finite() {
-            // The balance heuristic of Veach 1997, section 9.2.4.
-            light *= sample.pdf / (sample.pdf + pdf);
-        }
+        let Some(sample) = world.lights().sample(world.scene(), at.receiver, kind, at.rates, u) else { return };
+        let light = received(world, at.bsdf, &sample) * self.waves.of_rgb(sample.weight);
         // Also false for numbers that are none; those are to be found by the film.
         if light == Vec3::ZERO {
             return;
         }
-        let ray = shadow_ray(point, &sample);
         let salt = self.sampler.salt().wrapping_sub(self.surfaces);
-        self.rays += 1;
-        if !world.occluded(&ray, salt) {
-            self.add(light);
+        if casts_shadows(world, &sample) {
+            self.rays += 1;
+            if world.occluded(&shadow_ray(at.point, &sample), salt) {
+                return;
+            }
         }
+        self.add(light, sample.source);
     }
 
-    /// Adds radiance that comes along the path, clamped after the first surface.
-    fn add(&mut self, light: Vec3) {
+    /// Adds radiance that comes along the path, clamped after the first surface, if the picture is to show its source.
+    fn add(&mut self, light: Vec3, source: Source) {
+        if !self.world.options().contribution.shows(source) {
+            return;
+        }
         let light = self.throughput * light;
         let most = self.world.options().clamp;
         let largest = light.max_element();
@@ -196,11 +235,26 @@ pub(super) fn balance(pdf: f32, other: impl FnOnce() -> f32) -> f32 {
     if pdf.is_finite() { pdf / (pdf + other()) } else { 1.0 }
 }
 
+/// What a surface sends on of light that was drawn, over its density: the response with its cosine, and the weight of the
+/// balance heuristic (Veach 1997, section 9.2.4) where a direction from the surface might have met it.
+pub(super) fn received(world: &World, bsdf: &Bsdf, sample: &LightSample) -> Vec3 {
+    let is_matte_only = sample.lamp(world.scene()).is_some_and(|lamp| !lamp.reflections);
+    if is_matte_only {
+        return bsdf.eval_matte(sample.direction);
+    }
+    let (value, pdf) = bsdf.eval(sample.direction);
+    if sample.pdf.is_finite() { value * (sample.pdf / (sample.pdf + pdf)) } else { value }
+}
+
+/// Surfaces may stand in the way of the light.
+pub(super) fn casts_shadows(world: &World, sample: &LightSample) -> bool {
+    sample.lamp(world.scene()).is_none_or(|lamp| lamp.shadows)
+}
+
 pub(super) fn shadow_ray(point: &Point, sample: &LightSample) -> Ray {
     let origin = offset(point.position, point.rounding, point.geometric, sample.direction);
     match sample.end {
-        // A lamp that lies on a surface is not hidden by it.
-        End::Distance(distance) => Ray { origin, direction: sample.direction, t_max: distance * (1.0 - 1e-4) },
+        End::Distance(distance) => Ray { origin, direction: sample.direction, t_max: end_before(distance) },
         End::Surface { point: end, rounding, normal } => {
             let end = offset(end, rounding, normal, -sample.direction);
             let toward = end - origin;

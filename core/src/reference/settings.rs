@@ -1,5 +1,6 @@
 //! What the path tracer can be told.
 
+use super::lights::Source;
 use crate::lighting::classical;
 use crate::material::preset::FormChoice;
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
@@ -82,6 +83,50 @@ pub struct Options {
     pub masking: Masking,
     /// Light that bounces between microfacets.
     pub multiple_scattering: bool,
+    /// Whose light the picture shows.
+    pub contribution: Contribution,
+}
+
+/// The light that a picture shows. Paths are the same for each: pictures of one seed that show each source by itself add up
+/// to the one that shows all, to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Contribution {
+    /// All of it.
+    #[default]
+    All,
+    /// The environment's.
+    Environment,
+    /// That of materials that glow, unlit ones too.
+    Emission,
+    /// That of one light, an index into `Scene::lights`.
+    Light(usize),
+}
+
+impl Contribution {
+    /// Each source of a scene with `lights` lights.
+    pub fn each(lights: usize) -> impl Iterator<Item = Contribution> {
+        [Contribution::Environment, Contribution::Emission].into_iter().chain((0..lights).map(Contribution::Light))
+    }
+
+    /// True where a picture shows light from there.
+    pub(super) fn shows(self, source: Source) -> bool {
+        match self {
+            Contribution::All => true,
+            Contribution::Environment => source == Source::Environment,
+            Contribution::Emission => source == Source::Emission,
+            Contribution::Light(light) => source == Source::Lamp(light),
+        }
+    }
+
+    /// A word for files.
+    pub(super) fn word(self) -> String {
+        match self {
+            Contribution::All => "all".into(),
+            Contribution::Environment => "environment".into(),
+            Contribution::Emission => "emission".into(),
+            Contribution::Light(light) => format!("light {light}"),
+        }
+    }
 }
 
 impl Default for Options {
@@ -107,6 +152,6 @@ impl Options {
             _ => f32::INFINITY,
         };
         let classical::FrameSettings { masking, multiple_scattering, .. } = classical::FrameSettings::new(settings);
-        Options { bounces, clamp, masking, multiple_scattering }
+        Options { bounces, clamp, masking, multiple_scattering, contribution: Contribution::All }
     }
 }

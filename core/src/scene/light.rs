@@ -2,6 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+/// Angular radius below which a sun is parallel light, a fiftieth of the real one's.
+const SHARPEST: f32 = 1e-4;
+
 /// A light other than the environment and glowing materials.
 ///
 /// Lights block no rays: a ray that meets one takes up its radiance and goes on, so that what single lights contribute
@@ -45,7 +48,7 @@ pub enum LightKind {
     },
     /// A sun, infinitely far away.
     Directional {
-        /// Half the angle of its disc in radians, 0 to pi/2; parallel light when 0.
+        /// Half the angle of its disc in radians, 0 to pi/2; parallel light below 1e-4.
         angular_radius: f32,
     },
     /// Shines evenly to the side of `direction` only. Dark without an area.
@@ -99,11 +102,11 @@ impl LightKind {
         }
     }
 
-    /// Comes from one direction at each point: point, spot, or directional without an angle.
+    /// Comes from one direction at each point: point, spot, or directional of an angle below 1e-4.
     pub fn is_sharp(&self) -> bool {
         match *self {
             LightKind::Point | LightKind::Spot { .. } => true,
-            LightKind::Directional { angular_radius } => angular_radius <= 0.0,
+            LightKind::Directional { angular_radius } => angular_radius < SHARPEST,
             LightKind::Rectangle { .. } | LightKind::Sphere { .. } => false,
         }
     }

@@ -2,6 +2,7 @@
 
 mod closed;
 mod furnace;
+mod lamps;
 mod lobes;
 mod paths;
 

@@ -171,10 +171,12 @@ impl Spread {
         if self.metal != Vec3::ZERO {
             value += self.metal * albedo::loss(wi, s.alpha, s.masking);
         }
-        if self.matte != Vec3::ZERO {
-            value += self.matte * left(s, wi);
-        }
-        value
+        value + self.eval_matte(s, wi)
+    }
+
+    /// The matte base alone.
+    pub fn eval_matte(&self, s: &Surface, wi: Vec3) -> Vec3 {
+        if wi.z > 0.0 && self.matte != Vec3::ZERO { self.matte * left(s, wi) } else { Vec3::ZERO }
     }
 }
 

@@ -4,11 +4,14 @@ use std::ops::Range;
 
 use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::math::sampling;
+use burnish_core::reference::Contribution;
 use burnish_core::scene::{Camera, Projection};
 use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::layout::types::ViewData;
+use crate::layout::types::{
+    CONTRIBUTION_ALL, CONTRIBUTION_EMISSION, CONTRIBUTION_ENVIRONMENT, CONTRIBUTION_LIGHT, ViewData,
+};
 use crate::pass::gbuffer::GBuffer;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
@@ -107,6 +110,17 @@ impl Encoding {
     }
 }
 
+/// Its number in shaders.
+fn contribution(contribution: Contribution) -> u32 {
+    match contribution {
+        Contribution::All => CONTRIBUTION_ALL,
+        Contribution::Environment => CONTRIBUTION_ENVIRONMENT,
+        Contribution::Emission => CONTRIBUTION_EMISSION,
+        // A light that is not there has the largest number, which is none.
+        Contribution::Light(index) => u32::try_from(index).unwrap_or(u32::MAX).saturating_add(CONTRIBUTION_LIGHT),
+    }
+}
+
 fn view_data(
     resident: &Resident,
     camera: &Camera,
@@ -140,6 +154,10 @@ fn view_data(
         prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
         source_count: maps.source_count,
         wide_alpha: maps.wide_alpha,
+        contribution: contribution(settings.contribution),
+        unlit_words: shadows.unlit_words,
+        pad0: 0,
+        pad1: 0,
     }
 }
 

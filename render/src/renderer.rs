@@ -7,6 +7,7 @@ use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::material::Material;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
+use burnish_core::reference::Contribution;
 use burnish_core::scene::{Camera, Scene};
 use burnish_core::surface::ggx::Masking;
 use glam::{UVec2, Vec4};
@@ -42,6 +43,7 @@ pub struct View {
 pub struct Renderer {
     loader: Loader,
     resident: Resident,
+    contribution: Contribution,
     targets: Option<(Targets, Sums)>,
 }
 
@@ -55,13 +57,22 @@ impl Renderer {
     pub fn with_passes(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Result<Renderer, RenderError> {
         let mut loader = Loader::new(passes, Quality::Full);
         let resident = loader.load(scene, Masking::Correlated, None)?;
-        Ok(Renderer { loader, resident, targets: None })
+        Ok(Renderer { loader, resident, contribution: Contribution::All, targets: None })
     }
 
     /// Goes over to another valid scene; only what differs is made anew. On an error the old one stays.
     pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
         self.resident = self.loader.load(scene, self.resident.masking, Some(&self.resident))?;
         Ok(())
+    }
+
+    /// Shows the light of one source from now on, or all of it. Pictures of each source add up to that of all.
+    pub fn show(&mut self, contribution: Contribution) {
+        self.contribution = contribution;
+    }
+
+    fn settings(&self, view: &View) -> FrameSettings {
+        FrameSettings { contribution: self.contribution, ..FrameSettings::new(&view.settings) }
     }
 
     /// Names of lights that cast no shadow because there are more than the shadow maps hold.
@@ -89,7 +100,7 @@ impl Renderer {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, sums) = self.begin(&passes, view)?;
-        let settings = FrameSettings::new(&view.settings);
+        let settings = self.settings(view);
         // Stamps of a software rasteriser mean little.
         let clock = if gpu.is_software() { None } else { DeviceClock::new(gpu) };
         let start = Instant::now();
@@ -116,7 +127,7 @@ impl Renderer {
     fn begin(&mut self, passes: &Passes, view: &View) -> Result<(Targets, Sums), RenderError> {
         let gpu = &passes.gpu;
         check_size(gpu, view.size)?;
-        let settings = FrameSettings::new(&view.settings);
+        let settings = self.settings(view);
         if settings.masking != self.resident.masking {
             let scene = self.resident.scene.clone();
             self.resident = self.loader.load(&scene, settings.masking, Some(&self.resident))?;
@@ -144,7 +155,7 @@ impl Renderer {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, mut sums) = self.begin(&passes, view)?;
-        let settings = FrameSettings::new(&view.settings);
+        let settings = self.settings(view);
         let frames = view.jitter_frames.max(1);
         for frame in 0..frames {
             if !going_on(frame as f32 / frames as f32) {

@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{area, classical};
 use burnish_core::measure::view;
 use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
@@ -21,6 +21,8 @@ const TYPES: &str = include_str!("layout/types.wgsl");
 const TEXEL: &str = include_str!("pass/gbuffer/texel.wgsl");
 const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
 const SHADE: &str = include_str!("pass/classical/shade.wgsl");
+const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
+const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 
 /// Fills the G-buffer.
 pub static GBUFFER: Shader = Shader {
@@ -46,12 +48,14 @@ pub static ENVIRONMENT: Shader = Shader {
 /// Lights the G-buffer.
 pub static CLASSICAL: Shader = Shader {
     name: "classical",
-    leaves: &[&classical::WGSL, &ground::LEAF],
+    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF],
     files: &[
         TYPES,
         TEXEL,
         SCENE_BINDINGS,
         SHADE,
+        LAMPS,
+        SOFT,
         include_str!("pass/environment/background.wgsl"),
         include_str!("pass/classical/classical.wgsl"),
     ],
@@ -60,8 +64,8 @@ pub static CLASSICAL: Shader = Shader {
 /// Blended surfaces.
 pub static FORWARD: Shader = Shader {
     name: "forward",
-    leaves: &[&classical::WGSL, &micro_normal::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, SHADE, include_str!("pass/forward/forward.wgsl")],
+    leaves: &[&classical::WGSL, &area::WGSL, &micro_normal::WGSL],
+    files: &[TYPES, TEXEL, RESOLVE, SHADE, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
 };
 
 /// Adds a frame to the sum.

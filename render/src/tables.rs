@@ -1,8 +1,8 @@
-//! The one float buffer that leaves look things up in: GGX albedo, spectral Fresnel tables, split-sum tables.
+//! The one float buffer that leaves look things up in: GGX albedo, cosines of area lights, spectral Fresnel tables, split-sum tables.
 
 use std::sync::Arc;
 
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{area, classical};
 use burnish_core::material::Reflectance;
 use burnish_core::scene::Scene;
 use burnish_core::surface::fresnel::Fresnel;
@@ -41,7 +41,8 @@ pub struct TableCache {
 impl Tables {
     /// Joins the tables of all materials; presets that share a curve share its tables.
     pub fn new(cache: &mut TableCache, scene: &Scene, masking: Masking) -> Tables {
-        let mut floats = AlbedoTable::get().flat().to_vec();
+        // The shader finds the cosines behind the albedo tables.
+        let mut floats = [AlbedoTable::get().flat(), area::table()].concat();
         let mut seen: Vec<(&Arc<Fresnel>, Metal)> = Vec::new();
         let mut metals = Vec::with_capacity(scene.materials.len());
         for material in &scene.materials {

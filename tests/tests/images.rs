@@ -3,6 +3,8 @@
 //! A picture that differs is written next to its difference under the folder that the failure names.
 //! `BURNISH_ACCEPT=1` accepts what is rendered.
 
+#[path = "images/area.rs"]
+mod area;
 #[path = "images/background.rs"]
 mod background;
 #[path = "images/bumps.rs"]
@@ -47,6 +49,7 @@ fn main() {
     trials.push(trial("a normal map bends the normal as the mesh would, on both sides", &[Need::Gpu], both_sides));
     trials.push(trial("a lost device is an error from then on", &[Need::Gpu], lost_device));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
+    trials.extend(area::trials());
     trials.extend(background::trials());
     trials.extend(bumps::trials());
     trials.extend(environment::trials());

@@ -5,7 +5,7 @@ use std::f32::consts;
 
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::classical;
+use burnish_core::lighting::{area, classical};
 use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
@@ -210,6 +210,21 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("MICRO_NORMAL_CAST_OCTAVES", micro_normal::CAST_OCTAVES.into()),
             ("MICRO_NORMAL_CAST_GAIN", micro_normal::CAST_GAIN.into()),
             ("MICRO_NORMAL_CAST_SHARE", micro_normal::CAST_SHARE.into()),
+        ],
+        "area" => vec![
+            ("AREA_NODES", area::NODES.into()),
+            ("AREA_NUMBERS", area::NUMBERS.into()),
+            ("AREA_STRIDE", area::STRIDE.into()),
+            ("AREA_ROUGHNESS_MIN", area::ROUGHNESS_MIN.into()),
+            ("AREA_CORNERS_MAX", area::CORNERS_MAX as f64),
+            ("AREA_SIDES", area::SIDES.into()),
+            ("AREA_WIDENING", area::WIDENING.into()),
+            ("AREA_HORIZON", area::HORIZON.into()),
+            ("AREA_RATIO_MAX", area::RATIO_MAX.into()),
+            ("AREA_NOTHING", area::NOTHING.into()),
+            ("AREA_RECTANGLE", area::RECTANGLE.into()),
+            ("AREA_CAP", area::CAP.into()),
+            ("AREA_EVERYWHERE", area::EVERYWHERE.into()),
         ],
         "classical" => vec![("CLASSICAL_OVERLAP", classical::OVERLAP.into())],
         _ => Vec::new(),

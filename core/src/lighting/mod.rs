@@ -46,4 +46,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[&classical::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL];

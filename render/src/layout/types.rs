@@ -83,6 +83,15 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("LIGHT_POINT", LIGHT_POINT),
     ("LIGHT_SPOT", LIGHT_SPOT),
     ("LIGHT_DIRECTIONAL", LIGHT_DIRECTIONAL),
+    ("LIGHT_RECTANGLE", LIGHT_RECTANGLE),
+    ("LIGHT_SPHERE", LIGHT_SPHERE),
+    ("LIGHT_SUN", LIGHT_SUN),
+    ("LIGHT_CAMERA", LIGHT_CAMERA),
+    ("LIGHT_REFLECTIONS", LIGHT_REFLECTIONS),
+    ("CONTRIBUTION_ALL", CONTRIBUTION_ALL),
+    ("CONTRIBUTION_ENVIRONMENT", CONTRIBUTION_ENVIRONMENT),
+    ("CONTRIBUTION_EMISSION", CONTRIBUTION_EMISSION),
+    ("CONTRIBUTION_LIGHT", CONTRIBUTION_LIGHT),
     ("SHADOW_NONE", SHADOW_NONE),
 ];
 
@@ -104,6 +113,24 @@ pub const LIGHT_POINT: u32 = 0;
 pub const LIGHT_SPOT: u32 = 1;
 /// Kind of [`LightData`].
 pub const LIGHT_DIRECTIONAL: u32 = 2;
+/// Kind of [`LightData`].
+pub const LIGHT_RECTANGLE: u32 = 3;
+/// Kind of [`LightData`].
+pub const LIGHT_SPHERE: u32 = 4;
+/// Kind of [`LightData`]: directional with an angle.
+pub const LIGHT_SUN: u32 = 5;
+/// Flag of [`LightData`]: the eye sees it.
+pub const LIGHT_CAMERA: u32 = 1;
+/// Flag of [`LightData`]: adds to specular lobes.
+pub const LIGHT_REFLECTIONS: u32 = 2;
+/// All light, in [`ViewData::contribution`].
+pub const CONTRIBUTION_ALL: u32 = 0;
+/// That of the environment alone.
+pub const CONTRIBUTION_ENVIRONMENT: u32 = 1;
+/// That of glowing materials alone.
+pub const CONTRIBUTION_EMISSION: u32 = 2;
+/// That of the first light; of the next one more.
+pub const CONTRIBUTION_LIGHT: u32 = 3;
 /// `shadow_layer` of a light without a shadow map.
 pub const SHADOW_NONE: u32 = u32::MAX;
 
@@ -126,6 +153,10 @@ shared! {
         prefiltered_mips: f32,
         source_count: u32,
         wide_alpha: f32,
+        contribution: u32,
+        unlit_words: u32,
+        pad0: u32,
+        pad1: u32,
     }
 }
 
@@ -239,7 +270,7 @@ shared! {
 }
 
 shared! {
-    /// A punctual light.
+    /// A light.
     pub struct LightData {
         position: Vec3,
         kind: u32,
@@ -247,9 +278,14 @@ shared! {
         range: f32,
         intensity: Vec3,
         spot_scale: f32,
+        across: Vec3,
         spot_offset: f32,
+        size: Vec2,
         shadow_layer: u32,
         shadow_texel: f32,
+        flags: u32,
+        shadow_depth: f32,
         pad0: u32,
+        pad1: u32,
     }
 }

@@ -23,6 +23,18 @@ const MATERIAL_LOBE_SHIFT: u32 = 8u;
 const LIGHT_POINT: u32 = 0u;
 const LIGHT_SPOT: u32 = 1u;
 const LIGHT_DIRECTIONAL: u32 = 2u;
+const LIGHT_RECTANGLE: u32 = 3u;
+const LIGHT_SPHERE: u32 = 4u;
+// Directional with an angle.
+const LIGHT_SUN: u32 = 5u;
+// Flags of a light: the eye sees it; it adds to specular lobes.
+const LIGHT_CAMERA: u32 = 1u;
+const LIGHT_REFLECTIONS: u32 = 2u;
+// Whose light a picture shows; lights follow the first.
+const CONTRIBUTION_ALL: u32 = 0u;
+const CONTRIBUTION_ENVIRONMENT: u32 = 1u;
+const CONTRIBUTION_EMISSION: u32 = 2u;
+const CONTRIBUTION_LIGHT: u32 = 3u;
 // A light without a shadow map has this first layer.
 const SHADOW_NONE: u32 = 0xffffffffu;
 
@@ -47,6 +59,12 @@ struct ViewData {
     // Bright sources of the environment, and the width from which they are points to a lobe.
     source_count: u32,
     wide_alpha: f32,
+    // One of the CONTRIBUTION_ constants.
+    contribution: u32,
+    // Words of a light in the list of the instances that it leaves out; 0 when all light everything.
+    unlit_words: u32,
+    pad0: u32,
+    pad1: u32,
 }
 
 // What the eye sees behind everything.
@@ -173,13 +191,23 @@ struct LightData {
     direction: vec3f,
     // Cut-off distance in metres, 0 for none.
     range: f32,
+    // Candela, lux, or nit of a light with an area, times colour.
     intensity: vec3f,
     // Cone: factor = clamp(cos * spot_scale + spot_offset).
     spot_scale: f32,
+    // Unit, along a side of a rectangle; x of the cube of shadow maps.
+    across: vec3f,
     spot_offset: f32,
-    // First layer of the shadow array, six for a point light, or SHADOW_NONE.
+    // Full sides of a rectangle; radius of a sphere, sine of a sun.
+    size: vec2f,
+    // First layer of the shadow array, or SHADOW_NONE: six for a point or a sphere, five for a rectangle.
     shadow_layer: u32,
-    // World size of a shadow texel at distance 1 (point, spot) or everywhere (directional).
+    // World size of a shadow texel at distance 1, everywhere for directional lights.
     shadow_texel: f32,
+    // LIGHT_ flags.
+    flags: u32,
+    // Metres of the near plane, or from near to far for directional lights.
+    shadow_depth: f32,
     pad0: u32,
+    pad1: u32,
 }

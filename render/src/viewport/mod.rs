@@ -11,6 +11,7 @@ use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::measure::view::DisplayMode;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
+use burnish_core::reference::Contribution;
 use burnish_core::scene::{Camera, Projection, Scene};
 use burnish_core::surface::ggx::Masking;
 use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
@@ -106,6 +107,7 @@ pub struct Viewport {
     shown: Shown,
     /// The scene changed since the last frame.
     stale: bool,
+    contribution: Contribution,
     /// The finer cubes of the resident's environment, and the share that is done.
     preparing: Option<(Refinement, f32)>,
     last: Option<(Key, Camera)>,
@@ -129,6 +131,7 @@ impl Viewport {
             full: None,
             shown: Shown::Nothing,
             stale: false,
+            contribution: Contribution::All,
             preparing: None,
             last: None,
             display: None,
@@ -144,6 +147,11 @@ impl Viewport {
     pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
         let masking = self.resident.as_ref().map_or(Masking::Correlated, |resident| resident.masking);
         self.load(scene, masking)
+    }
+
+    /// Shows the light of one source from the next frame on, or all of it.
+    pub fn set_contribution(&mut self, contribution: Contribution) {
+        self.contribution = contribution;
     }
 
     fn load(&mut self, scene: &Arc<Scene>, masking: Masking) -> Result<(), RenderError> {
@@ -168,7 +176,7 @@ impl Viewport {
         let gpu = &passes.gpu;
         gpu.check()?;
         check_size(gpu, frame.size)?;
-        let settings = FrameSettings::new(&frame.settings);
+        let settings = FrameSettings { contribution: self.contribution, ..FrameSettings::new(&frame.settings) };
         let Some(resident) = &self.resident else {
             return Ok(Drawn { settled: true, ..Drawn::default() });
         };

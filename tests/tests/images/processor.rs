@@ -33,7 +33,11 @@ pub fn trials() -> Vec<Trial> {
 /// Means within 0.4 %, texels within 1.5 % in the mean: shadow maps, mip maps and the texture units' eight bits between
 /// two texels.
 fn same(name: &str, samples: &str) {
-    let mut scene = gallery::open(name).expect("in the gallery");
+    same_scene(gallery::open(name).expect("in the gallery"), samples);
+}
+
+/// Means and texels of a scene under an uneven sky; `samples` is the setting.
+pub fn same_scene(mut scene: Scene, samples: &str) {
     scene.environment = Some(Arc::new(sky()));
     assert_same(scene, samples);
 }

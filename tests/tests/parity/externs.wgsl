@@ -2,7 +2,7 @@
 
 @group(0) @binding(0) var<storage, read> parity_inputs: array<vec4f>;
 @group(0) @binding(1) var<storage, read_write> parity_outputs: array<vec4f>;
-// The albedo tables, the curves' fields, the curves' tables.
+// The albedo tables, the cosines of area lights, the curves' fields, the curves' tables.
 @group(0) @binding(2) var<storage, read> parity_table: array<f32>;
 
 fn parity_vec3(at: u32) -> vec3f {
@@ -11,6 +11,10 @@ fn parity_vec3(at: u32) -> vec3f {
 
 fn ggx_albedo_entry(index: u32) -> f32 {
     return parity_table[index];
+}
+
+fn area_entry(index: u32) -> f32 {
+    return parity_table[PARITY_AREA + index];
 }
 
 fn fresnel_table(table: u32, entry: u32) -> vec3f {

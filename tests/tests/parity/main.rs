@@ -3,6 +3,7 @@
 //! One file per leaf holds its cases. A leaf without a case fails, and so does a function of a leaf that no case
 //! reaches.
 
+mod area;
 mod blinn_phong;
 mod classical;
 mod coat;
@@ -53,6 +54,7 @@ fn cases() -> Vec<Case> {
     cases.extend(coat::cases());
     cases.extend(layered::cases());
     cases.extend(micro_normal::cases());
+    cases.extend(area::cases());
     cases.extend(classical::cases());
     cases
 }

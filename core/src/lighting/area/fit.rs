@@ -101,6 +101,11 @@ pub fn row(node: u32, masking: Masking) -> Vec<[f64; 4]> {
     fitted
 }
 
+/// A node of the table, from a start near it.
+pub fn node(node: u32, column: u32, masking: Masking, start: [f64; 4]) -> [f64; 4] {
+    Target::new(node_mu(column), node_alpha(node), masking).fit(start)
+}
+
 /// The largest error of a node, [`Target::error`], under any light.
 pub fn error(node: u32, column: u32, masking: Masking, numbers: &[f64; 4]) -> f64 {
     Target::new(node_mu(column), node_alpha(node), masking).error(numbers)

@@ -180,7 +180,7 @@ pub fn environment(
 }
 
 /// A shading normal may look away from the viewer: brings the direction back above the horizon.
-fn facing(wo: Vec3) -> Vec3 {
+pub(super) fn facing(wo: Vec3) -> Vec3 {
     Vec3::new(wo.x, wo.y, wo.z.max(1e-3)).normalize()
 }
 

@@ -20,7 +20,7 @@ use crate::job::Handle;
 use crate::leaf::Leaf;
 use crate::material::preset::{FormChoice, Tolerance};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
-use crate::reference::World;
+use crate::reference::{Contribution, World};
 use crate::surface::fresnel::Fresnel;
 use crate::surface::ggx::Masking;
 use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
@@ -176,6 +176,8 @@ pub struct FrameSettings {
     pub masking: Masking,
     /// Light that bounces between microfacets.
     pub multiple_scattering: bool,
+    /// Whose light the picture shows; no setting of the method.
+    pub contribution: Contribution,
 }
 
 impl FrameSettings {
@@ -190,7 +192,7 @@ impl FrameSettings {
             _ => Masking::Correlated,
         };
         let multiple_scattering = settings.text("multiple-scattering").as_deref() != Some("off");
-        FrameSettings { samples, masking, multiple_scattering }
+        FrameSettings { samples, masking, multiple_scattering, contribution: Contribution::All }
     }
 }
 

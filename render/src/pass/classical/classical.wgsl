@@ -22,14 +22,22 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let first = textureLoad(words0, pixel, 0);
     if first.x == 0u {
-        let seen = background_seen(background_origin(position.xy), background_direction(position.xy));
-        return vec4f(min(seen, vec3f(frame_max)), 1.0);
+        let origin = background_origin(position.xy);
+        let direction = background_direction(position.xy);
+        var value = lamps_seen(origin, direction, 2.0 * FAR);
+        if shows(CONTRIBUTION_ENVIRONMENT) {
+            value += background_seen(origin, direction);
+        }
+        return vec4f(min(value, vec3f(frame_max)), 1.0);
     }
     let packed = Packed(
         first, textureLoad(words1, pixel, 0), textureLoad(words2, pixel, 0), textureLoad(words3, pixel, 0),
     );
     let world = unproject(position.xy, textureLoad(depth, pixel, 0));
-    return vec4f(shade(texel_unpack(packed), world.xyz / world.w, pixel), 1.0);
+    let point = world.xyz / world.w;
+    let origin = background_origin(position.xy);
+    let before = lamps_seen(origin, background_direction(position.xy), distance(origin, point));
+    return vec4f(min(shade(texel_unpack(packed), point, pixel) + before, vec3f(frame_max)), 1.0);
 }
 
 // Where the ray of a pixel starts.

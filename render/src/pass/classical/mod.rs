@@ -38,6 +38,7 @@ pub fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             buffer_entry(8, fragment, storage),
             texture_entry(9, float, cube),
             buffer_entry(10, fragment, storage),
+            buffer_entry(11, fragment, storage),
         ],
     })
 }
@@ -65,6 +66,7 @@ pub fn light_group(
         tables.as_entire_binding(),
         wgpu::BindingResource::TextureView(&cubes[3]),
         maps.sources.as_entire_binding(),
+        shadows.unlit.as_entire_binding(),
     ];
     let entries: Vec<_> =
         (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();

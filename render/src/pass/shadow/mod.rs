@@ -1,32 +1,45 @@
-//! Shadow maps of the punctual lights: one layer for a spot or directional light, six for a point light.
+//! Shadow maps of the lights: one layer for a spot or directional light, six for a point or a sphere, five for a
+//! rectangle, seen from the middle of the light.
 //!
 //! They are rendered once for a scene and kept until what casts shadows or the places of the lights change.
 
 mod casters;
+mod lights;
 
-use burnish_core::scene::{Bounds, Light, LightKind, Scene};
-use glam::camera::rh::{proj::directx as proj, view};
-use glam::{Mat4, Vec3};
+use burnish_core::scene::{Bounds, Scene};
+use glam::Mat4;
 
 use crate::device::Gpu;
-use crate::layout::types::{LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT, LightData, SHADOW_NONE, ViewData};
+use crate::layout::types::{LightData, SHADOW_NONE, ViewData};
 use crate::pass::gbuffer::{DEPTH_FORMAT, depth_state};
 use crate::pass::{MeshKind, MeshPipelines};
 use crate::scene::GpuScene;
 use crate::shader;
 use casters::Caster;
 
-/// Edge of a shadow map in texels.
+/// Edge of a shadow map in texels, while there are few.
 pub const RESOLUTION: u32 = 2048;
-/// Layers that are allocated at most; lights after that cast no shadow.
-pub const LAYERS_MAX: u32 = 24;
-/// Widest cone that one map can hold.
-const SPOT_ANGLE_MAX: f32 = 1.4;
+/// Layers that have it; more share the memory of these, 400 MB.
+const LAYERS_FULL: u32 = 24;
+/// Layers that are allocated at most, as many as every adapter allows; lights after that cast no shadow.
+pub const LAYERS_MAX: u32 = 256;
+
+/// Edge of each of so many maps: halved until all fit the memory.
+fn resolution(layers: usize) -> u32 {
+    let mut edge = RESOLUTION;
+    while layers as u64 * u64::from(edge).pow(2) > u64::from(LAYERS_FULL) * u64::from(RESOLUTION).pow(2) {
+        edge /= 2;
+    }
+    edge
+}
 
 /// The lights of a scene with their maps.
 pub struct Shadows {
     pub(crate) lights: wgpu::Buffer,
     pub(crate) light_count: u32,
+    /// A bit for each light and instance that it leaves out, `unlit_words` words a light; none where all are lit.
+    pub(crate) unlit: wgpu::Buffer,
+    pub(crate) unlit_words: u32,
     pub(crate) clip_from_world: wgpu::Buffer,
     pub(crate) maps: wgpu::TextureView,
     /// Lights that got no map because there are too many.
@@ -73,32 +86,37 @@ impl ShadowPass {
         scene_layout: &wgpu::BindGroupLayout,
         before: Option<&Shadows>,
     ) -> Shadows {
-        let mut data = Vec::new();
         let mut matrices = Vec::new();
         let mut unshadowed = Vec::new();
-        // Lights with an area are not drawn live yet.
-        for light in scene.lights.iter().filter(|light| light.kind.is_punctual()) {
-            let views = light_views(light, bounds);
+        let mut layers = Vec::new();
+        for light in &scene.lights {
+            let views = if light.shadows { lights::views(light, bounds) } else { Vec::new() };
             let fits = matrices.len() + views.len() <= LAYERS_MAX as usize;
-            let layer = if fits && !views.is_empty() { matrices.len() as u32 } else { SHADOW_NONE };
-            if layer == SHADOW_NONE {
-                unshadowed.push(light.name.clone());
-            } else {
+            layers.push(if fits && !views.is_empty() { matrices.len() as u32 } else { SHADOW_NONE });
+            if fits {
                 matrices.extend(views);
+            } else {
+                unshadowed.push(light.name.clone());
             }
-            data.push(light_data(light, bounds, layer));
         }
+        let edge = resolution(matrices.len());
+        let each = scene.lights.iter().zip(&layers);
+        let mut data: Vec<LightData> = each.map(|(light, layer)| lights::data(light, bounds, *layer, edge)).collect();
         let light_count = data.len() as u32;
         if data.is_empty() {
             data.push(bytemuck::Zeroable::zeroed());
         }
         let storage = wgpu::BufferUsages::STORAGE;
         let lights = gpu.buffer("lights", bytemuck::cast_slice(&data), storage);
+        let (words, unlit_words) = lights::unlit(scene);
+        let unlit = gpu.buffer("unlit", bytemuck::cast_slice(&words), storage);
         let casters = casters::list(scene);
         if let Some(before) = before.filter(|before| before.matrices == matrices && before.casters == casters) {
             return Shadows {
                 lights,
                 light_count,
+                unlit,
+                unlit_words,
                 unshadowed,
                 matrices,
                 casters,
@@ -114,6 +132,8 @@ impl ShadowPass {
         Shadows {
             lights,
             light_count,
+            unlit,
+            unlit_words,
             unshadowed,
             clip_from_world: gpu.buffer("shadow matrices", bytemuck::cast_slice(stored), storage),
             maps: maps.create_view(&wgpu::TextureViewDescriptor {
@@ -164,7 +184,7 @@ impl ShadowPass {
 }
 
 fn create_maps(gpu: &Gpu, layers: usize) -> wgpu::Texture {
-    let edge = if layers == 0 { 1 } else { RESOLUTION };
+    let edge = if layers == 0 { 1 } else { resolution(layers) };
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadow maps"),
         size: wgpu::Extent3d { width: edge, height: edge, depth_or_array_layers: layers.max(1) as u32 },
@@ -188,55 +208,12 @@ pub fn sampler(device: &wgpu::Device) -> wgpu::Sampler {
     })
 }
 
-/// The axis of an upright camera that looks along `direction`.
-fn up_for(direction: Vec3) -> Vec3 {
-    if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// One clip-from-world matrix a layer, depth reversed.
-fn light_views(light: &Light, bounds: Bounds) -> Vec<Mat4> {
-    let radius = bounds.radius().max(1e-6);
-    // A thousandth of the scene: nearer casters are inside the lamp.
-    let near = radius * 1e-3;
-    let toward = |direction: Vec3| view::look_to_mat4(light.position, direction, up_for(direction));
-    match light.kind {
-        LightKind::Point => [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z]
-            .map(|d| proj::perspective_infinite_reverse(std::f32::consts::FRAC_PI_2, 1.0, near) * toward(d))
-            .to_vec(),
-        LightKind::Spot { outer_angle, .. } => {
-            let angle = 2.0 * outer_angle.clamp(1e-3, SPOT_ANGLE_MAX);
-            vec![proj::perspective_infinite_reverse(angle, 1.0, near) * toward(light.direction)]
-        }
-        LightKind::Directional { .. } => {
-            let eye = bounds.center() - light.direction * (2.0 * radius);
-            let view = view::look_to_mat4(eye, light.direction, up_for(light.direction));
-            // Far and near are exchanged: depth is reversed.
-            vec![proj::orthographic(-radius, radius, -radius, radius, 4.0 * radius, 0.0) * view]
-        }
-        LightKind::Rectangle { .. } | LightKind::Sphere { .. } => Vec::new(),
-    }
-}
-
-fn light_data(light: &Light, bounds: Bounds, shadow_layer: u32) -> LightData {
-    let (kind, spot_scale, spot_offset, extent) = match light.kind {
-        LightKind::Point | LightKind::Rectangle { .. } | LightKind::Sphere { .. } => (LIGHT_POINT, 0.0, 1.0, 2.0),
-        LightKind::Spot { inner_angle, outer_angle } => {
-            // KHR_lights_punctual, "Inner and Outer Cone Angles".
-            let scale = 1.0 / (inner_angle.cos() - outer_angle.cos()).max(1e-3);
-            (LIGHT_SPOT, scale, -outer_angle.cos() * scale, 2.0 * outer_angle.clamp(1e-3, SPOT_ANGLE_MAX).tan())
-        }
-        LightKind::Directional { .. } => (LIGHT_DIRECTIONAL, 0.0, 1.0, 2.0 * bounds.radius()),
-    };
-    LightData {
-        position: light.position,
-        kind,
-        direction: light.direction,
-        range: if light.range.is_finite() { light.range } else { 0.0 },
-        intensity: light.intensity,
-        spot_scale,
-        spot_offset,
-        shadow_layer,
-        shadow_texel: extent / RESOLUTION as f32,
-        pad0: 0,
+    #[test]
+    fn many_maps_are_smaller_and_all_fit_the_memory() {
+        assert_eq!([0, 24, 25, 96, 97, LAYERS_MAX as usize].map(resolution), [2048, 2048, 1024, 1024, 512, 512]);
     }
 }

@@ -1,0 +1,322 @@
+// Rectangles and spheres of even radiance, reflected by linearly transformed cosines. Shapes and directions are local to
+// the frame of a lobe, relative to the point. The pass supplies area_entry(index), the table of cosines.rs.
+
+const AREA_NODES: u32 = 32u;
+const AREA_NUMBERS: u32 = 4u;
+const AREA_STRIDE: u32 = AREA_NODES * AREA_NODES * AREA_NUMBERS;
+// sqrt(alpha_min), where the axis of the width starts.
+const AREA_ROUGHNESS_MIN: f32 = 0.03162278;
+const AREA_CORNERS_MAX: u32 = 16u;
+// Sides of the polygon that stands for a sphere; its radius over that of the circle of equal area.
+const AREA_SIDES: u32 = 12u;
+const AREA_WIDENING: f32 = 1.0233267;
+// Height over the horizon of the corners of the whole hemisphere.
+const AREA_HORIZON: f32 = 1e-4;
+// Most by which a small light is raised over what the cosines give.
+const AREA_RATIO_MAX: f32 = 4.0;
+
+const AREA_NOTHING: u32 = 0u;
+const AREA_RECTANGLE: u32 = 1u;
+const AREA_CAP: u32 = 2u;
+const AREA_EVERYWHERE: u32 = 3u;
+
+// What shines. Rectangle: its middle and half its sides, cross(across, up) pointing away from the point. Cap: unit axis,
+// and the sine of half its angle.
+struct AreaShape {
+    center: vec3f,
+    kind: u32,
+    across: vec3f,
+    sine: f32,
+    up: vec3f,
+}
+
+struct AreaPolygon {
+    corners: array<vec3f, AREA_CORNERS_MAX>,
+    count: u32,
+}
+
+// A clamped cosine under a matrix, see the Rust twin.
+struct AreaCosines {
+    azimuth: vec2f,
+    sin: f32,
+    cos: f32,
+    along: f32,
+    across: f32,
+    shear: f32,
+    skew: f32,
+}
+
+fn area_nothing() -> AreaShape {
+    return AreaShape(vec3f(0.0), AREA_NOTHING, vec3f(0.0), 0.0, vec3f(0.0));
+}
+
+// Middle relative to the point, unit direction and side, full sizes.
+fn area_rectangle(center: vec3f, direction: vec3f, across: vec3f, size: vec2f) -> AreaShape {
+    if !(dot(center, direction) < 0.0) || !(min(size.x, size.y) > 0.0) {
+        return area_nothing();
+    }
+    let up = cross(across, direction);
+    return AreaShape(center, AREA_RECTANGLE, 0.5 * size.x * across, 0.0, 0.5 * size.y * up);
+}
+
+fn area_cap(axis: vec3f, sine: f32) -> AreaShape {
+    return AreaShape(axis, AREA_CAP, vec3f(0.0), sine, vec3f(0.0));
+}
+
+fn area_sphere(center: vec3f, radius: f32) -> AreaShape {
+    let distance = length(center);
+    if !(radius > 0.0) {
+        return area_nothing();
+    }
+    if distance <= radius {
+        return AreaShape(vec3f(0.0), AREA_EVERYWHERE, vec3f(0.0), 1.0, vec3f(0.0));
+    }
+    return area_cap(center / distance, radius / distance);
+}
+
+fn area_local(shape: AreaShape, frame: Frame) -> AreaShape {
+    let across = frame_to_local(frame, shape.across);
+    let up = frame_to_local(frame, shape.up);
+    return AreaShape(frame_to_local(frame, shape.center), shape.kind, across, shape.sine, up);
+}
+
+// What of a shape is above the horizon.
+fn area_polygon(shape: AreaShape) -> AreaPolygon {
+    var polygon: AreaPolygon;
+    polygon.count = 0u;
+    if shape.kind == AREA_RECTANGLE {
+        let low = shape.center - shape.up;
+        let high = shape.center + shape.up;
+        polygon.corners[0] = low - shape.across;
+        polygon.corners[1] = low + shape.across;
+        polygon.corners[2] = high + shape.across;
+        polygon.corners[3] = high - shape.across;
+        polygon.count = 4u;
+    } else if shape.kind == AREA_CAP {
+        let frame = frame_new(shape.center);
+        let cosine = sqrt(max((1.0 - shape.sine) * (1.0 + shape.sine), 0.0));
+        for (var i = 0u; i < AREA_SIDES; i++) {
+            let phi = 2.0 * PI * f32(i) / f32(AREA_SIDES);
+            let around = vec2f(cos(phi), sin(phi)) * (AREA_WIDENING * shape.sine);
+            polygon.corners[i] = frame_to_world(frame, vec3f(around, cosine));
+        }
+        polygon.count = AREA_SIDES;
+    } else if shape.kind == AREA_EVERYWHERE {
+        polygon.corners[0] = vec3f(1.0, 0.0, AREA_HORIZON);
+        polygon.corners[1] = vec3f(0.0, 1.0, AREA_HORIZON);
+        polygon.corners[2] = vec3f(-1.0, 0.0, AREA_HORIZON);
+        polygon.corners[3] = vec3f(0.0, -1.0, AREA_HORIZON);
+        polygon.count = 4u;
+        return polygon;
+    }
+    return area_clipped(&polygon);
+}
+
+// What is above the plane z = 0.
+fn area_clipped(polygon: ptr<function, AreaPolygon>) -> AreaPolygon {
+    var left: AreaPolygon;
+    left.count = 0u;
+    let count = (*polygon).count;
+    if count == 0u {
+        return left;
+    }
+    var start = (*polygon).corners[count - 1u];
+    for (var i = 0u; i < count; i++) {
+        let end = (*polygon).corners[i];
+        if (start.z > 0.0) != (end.z > 0.0) && left.count < AREA_CORNERS_MAX {
+            let crossing = start + (end - start) * (start.z / (start.z - end.z));
+            left.corners[left.count] = vec3f(crossing.xy, 0.0);
+            left.count++;
+        }
+        if end.z > 0.0 && left.count < AREA_CORNERS_MAX {
+            left.corners[left.count] = end;
+            left.count++;
+        }
+        start = end;
+    }
+    return left;
+}
+
+// Angle in [0, pi] whose sine and cosine are in this ratio; sine >= 0. Abramowitz and Stegun 1964, 4.4.49.
+fn area_angle(sine: f32, cosine: f32) -> f32 {
+    let x = min(sine, abs(cosine)) / max(max(sine, abs(cosine)), 1e-30);
+    let x2 = x * x;
+    let tail = 0.10656264 + x2 * (-0.07528964 + x2 * (0.042909613 + x2 * (-0.016165737 + x2 * 0.0028662257)));
+    let acute = x * (1.0 + x2 * (-0.33333145 + x2 * (0.19993551 + x2 * (-0.142089 + x2 * tail))));
+    let first = select(acute, 0.5 * PI - acute, sine > abs(cosine));
+    return select(first, PI - first, cosine < 0.0);
+}
+
+// Integral of the direction over the solid angle.
+fn area_flux(polygon: ptr<function, AreaPolygon>) -> vec3f {
+    let count = (*polygon).count;
+    var sum = vec3f(0.0);
+    if count == 0u {
+        return sum;
+    }
+    var start = (*polygon).corners[count - 1u];
+    for (var i = 0u; i < count; i++) {
+        let end = (*polygon).corners[i];
+        // The cross product with the difference keeps the digits of short edges.
+        let normal = cross(start, end - start);
+        let sine = length(normal);
+        sum += normal * (area_angle(sine, dot(start, end)) / max(sine, 1e-30));
+        start = end;
+    }
+    return 0.5 * sum;
+}
+
+fn area_node(first: u32, row: u32, column: u32) -> vec4f {
+    let at = first + (row * AREA_NODES + column) * AREA_NUMBERS;
+    return vec4f(area_entry(at), area_entry(at + 1u), area_entry(at + 2u), area_entry(at + 3u));
+}
+
+// Lengths along and across, shear and turn, over alpha: bilinear between nodes.
+fn area_lookup(mu: f32, alpha: f32, masking: u32) -> vec4f {
+    let x = clamp(sqrt(max(1.0 - mu, 0.0)), 0.0, 1.0) * f32(AREA_NODES - 1u);
+    let root = sqrt(clamp(alpha, GGX_ALPHA_MIN, 1.0));
+    let y = clamp((root - AREA_ROUGHNESS_MIN) / (1.0 - AREA_ROUGHNESS_MIN), 0.0, 1.0) * f32(AREA_NODES - 1u);
+    let column = min(u32(x), AREA_NODES - 2u);
+    let row = min(u32(y), AREA_NODES - 2u);
+    let first = masking * AREA_STRIDE;
+    let s = x - f32(column);
+    let near = mix(area_node(first, row, column), area_node(first, row, column + 1u), s);
+    let far = mix(area_node(first, row + 1u, column), area_node(first, row + 1u, column + 1u), s);
+    return mix(near, far, y - f32(row));
+}
+
+// The lobe toward wo for widths along local x and y.
+fn area_cosines(wo: vec3f, alpha: vec2f, masking: u32) -> AreaCosines {
+    let a = ggx_clamp_alpha(alpha);
+    let sin_theta = length(wo.xy);
+    var azimuth = vec2f(1.0, 0.0);
+    if sin_theta > 1e-18 {
+        azimuth = wo.xy / sin_theta;
+    }
+    let mu = clamp(wo.z, 0.0, 1.0);
+    let p = length(azimuth * a);
+    let q = a.x * a.y / p;
+    let mixed = azimuth.x * azimuth.y * (a.y * a.y - a.x * a.x) / p;
+    let node = area_lookup(mu, p, masking);
+    var unit_across = node.y;
+    if a.x != a.y {
+        unit_across = area_lookup(mu, q, masking).y;
+    }
+    let s = sin(node.w * p);
+    let c = cos(node.w * p);
+    return AreaCosines(
+        azimuth, sin_theta * c + wo.z * s, wo.z * c - sin_theta * s,
+        node.x * p, unit_across * q, node.z * p, unit_across * mixed,
+    );
+}
+
+// M^-1 v.
+fn area_flatten(lobe: AreaCosines, v: vec3f) -> vec3f {
+    let plane = vec2f(dot(lobe.azimuth, v.xy), lobe.azimuth.x * v.y - lobe.azimuth.y * v.x);
+    let z = v.z * lobe.cos - plane.x * lobe.sin;
+    let x = (plane.x * lobe.cos + v.z * lobe.sin - lobe.shear * z) / lobe.along;
+    return vec3f(x, (plane.y - lobe.skew * x) / lobe.across, z);
+}
+
+// M o.
+fn area_shape(lobe: AreaCosines, o: vec3f) -> vec3f {
+    let x = lobe.along * o.x + lobe.shear * o.z;
+    let y = lobe.skew * o.x + lobe.across * o.y;
+    let plane = x * lobe.cos - o.z * lobe.sin;
+    let turned = lobe.azimuth * plane + vec2f(-lobe.azimuth.y, lobe.azimuth.x) * y;
+    return vec3f(turned, x * lobe.sin + o.z * lobe.cos);
+}
+
+// Share of the lobe above the horizon.
+fn area_above_horizon(lobe: AreaCosines) -> f32 {
+    let up = vec2f(lobe.along * lobe.sin, lobe.shear * lobe.sin + lobe.cos);
+    return 0.5 + 0.5 * up.y / max(length(up), 1e-20);
+}
+
+// Density per steradian in a unit direction.
+fn area_density(lobe: AreaCosines, w: vec3f) -> f32 {
+    let o = area_flatten(lobe, w);
+    let length2 = dot(o, o);
+    return max(o.z, 0.0) * INV_PI / (lobe.along * lobe.across * length2 * length2);
+}
+
+// Unit, above the horizon by a hair at least.
+fn area_above(v: vec3f) -> vec3f {
+    let length2 = dot(v, v);
+    if !(length2 > 1e-37) {
+        return vec3f(0.0, 0.0, 1.0);
+    }
+    let unit = v / sqrt(length2);
+    return normalize(vec3f(unit.xy, max(unit.z, 1e-4)));
+}
+
+// x: share of the lobe that a polygon fills. yzw: mean direction of the light that is reflected, about.
+fn area_filling(lobe: AreaCosines, polygon: ptr<function, AreaPolygon>) -> vec4f {
+    var flat = *polygon;
+    for (var i = 0u; i < flat.count; i++) {
+        flat.corners[i] = area_flatten(lobe, flat.corners[i]);
+    }
+    var left = area_clipped(&flat);
+    let flux = area_flux(&left);
+    let share = clamp(flux.z * INV_PI / area_above_horizon(lobe), 0.0, 1.0);
+    return vec4f(share, area_above(area_shape(lobe, flux)));
+}
+
+// Radiance for F = 1 by a lobe of this albedo, whose cosine at the half vector and BRDF toward the light are `facet`: the
+// share, and for small lights the ratio of the lobe to the cosines.
+fn area_reflected(lobe: AreaCosines, filled: vec4f, albedo: f32, facet: vec2f) -> f32 {
+    let expected = max(albedo * area_density(lobe, filled.yzw), 1e-20);
+    let ratio = clamp(facet.y * filled.w * area_above_horizon(lobe) / expected, 0.0, AREA_RATIO_MAX);
+    let left = (1.0 - filled.x) * (1.0 - filled.x);
+    return filled.x * albedo * (1.0 + left * (ratio - 1.0));
+}
+
+// Cosine at the half vector of two directions.
+fn area_half_cosine(wo: vec3f, wi: vec3f) -> f32 {
+    let h = wo + wi;
+    let length2 = dot(h, h);
+    return select(wo.z, clamp(dot(wo, h) * inverseSqrt(length2), 0.0, 1.0), length2 > 1e-24);
+}
+
+// Radiance toward the viewer under a shape of radiance 1, unshadowed. Without `reflections` only the matte base is lit.
+fn area_response(
+    s: Surface, wo: vec3f, base: AreaShape, coat_wo: vec3f, coat: AreaShape, reflections: bool,
+) -> vec3f {
+    var value = vec3f(0.0);
+    var polygon = area_polygon(base);
+    if polygon.count >= 3u {
+        let flux = area_flux(&polygon);
+        let wi = area_above(flux);
+        var spread = vec3f(0.0);
+        if reflections {
+            spread = layered_spread(s, wo, wi);
+        } else if s.metallic < 1.0 {
+            spread = (1.0 - s.metallic) * layered_matte(s, wo, wi);
+        }
+        value = spread * max(flux.z, 0.0);
+        if reflections {
+            let lobe = area_cosines(wo, s.alpha, s.masking);
+            let filled = area_filling(lobe, &polygon);
+            let facet = layered_facet(s, wo, filled.yzw);
+            let glossy = area_reflected(lobe, filled, layered_lobe_albedo(s, wo), facet);
+            value += glossy * layered_reflectance(s, area_half_cosine(wo, filled.yzw));
+        }
+    }
+    if s.coat <= 0.0 {
+        return value;
+    }
+    polygon = area_polygon(coat);
+    let wi = area_above(area_flux(&polygon));
+    value *= coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking)
+        * coat_transmission(wi, s.coat_alpha, s.coat, s.masking);
+    if polygon.count < 3u || !reflections {
+        return value;
+    }
+    let widths = vec2f(s.coat_alpha);
+    let lobe = area_cosines(coat_wo, widths, s.masking);
+    let filled = area_filling(lobe, &polygon);
+    let facet = ggx_microfacet(coat_wo, filled.yzw, widths, s.masking);
+    let over = area_reflected(lobe, filled, 1.0 - ggx_loss(coat_wo, widths, s.masking), facet);
+    let cos_theta = area_half_cosine(coat_wo, filled.yzw);
+    return value + s.coat * over * fresnel_schlick(vec3f(COAT_F0), 1.0, cos_theta).x;
+}

@@ -17,8 +17,10 @@ pub fn initial() -> Tree<Pane> {
     };
     let (objects, metals) = (tabs(&[Pane::Scene, Pane::History]), tabs(&[Pane::Presets]));
     let picture = tabs(&[Pane::Viewport]);
-    let (material, plot) =
-        (tabs(&[Pane::Material, Pane::Environment, Pane::Compare, Pane::Chart]), tabs(&[Pane::Reflectance]));
+    let (material, plot) = (
+        tabs(&[Pane::Material, Pane::Lights, Pane::Environment, Pane::Compare, Pane::Chart]),
+        tabs(&[Pane::Reflectance]),
+    );
     let mut column = |upper, lower, share: f32| {
         let mut linear = Linear::new(LinearDir::Vertical, vec![upper, lower]);
         linear.shares.set_share(upper, share);

@@ -17,6 +17,8 @@ pub struct Selection {
     pub objects: Vec<String>,
     /// Index of the material that the inspector shows.
     pub material: usize,
+    /// Names of lights.
+    pub lights: Vec<String>,
 }
 
 /// An open document.
@@ -242,5 +244,9 @@ impl Session {
         let materials = self.document().materials.len();
         self.selection.material = self.selection.material.min(materials.saturating_sub(1));
         self.selection.objects.retain(|key| self.resolved.object_keys.contains(key));
+        if !self.selection.lights.is_empty() {
+            let lights = super::lights::entries(self);
+            self.selection.lights.retain(|name| lights.iter().any(|light| light.name == *name));
+        }
     }
 }

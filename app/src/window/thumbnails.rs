@@ -16,7 +16,7 @@ use burnish_core::material::preset::Preset;
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
-use burnish_core::scene::{Camera, Instance, Scene, gallery};
+use burnish_core::scene::{Camera, Environment, Instance, Light, Scene, gallery};
 use burnish_core::surface::fresnel::Form;
 use burnish_render::pass::environment::downsampled;
 use burnish_render::{Passes, Renderer, View};
@@ -49,6 +49,9 @@ const UNDER_WAY: usize = 3;
 pub struct Subject {
     values: Values,
     metal: Option<Arc<Preset>>,
+    lights: Vec<Light>,
+    /// Factor on the studio.
+    strength: f32,
     hash: String,
 }
 
@@ -63,7 +66,15 @@ impl Subject {
                 list.iter().for_each(|number| _ = hasher.update(&number.to_le_bytes()));
             }
         }
-        Subject { values, metal, hash: hasher.finalize().to_hex().to_string() }
+        let hash = hasher.finalize().to_hex().to_string();
+        Subject { values, metal, lights: Vec::new(), strength: 1.0, hash }
+    }
+
+    /// The same in the light of these lamps, and of so much of the studio.
+    #[must_use]
+    pub fn under(self, lights: Vec<Light>, strength: f32) -> Subject {
+        let seen = format!("{} {strength} {lights:?}", self.hash);
+        Subject { lights, strength, hash: blake3::hash(seen.as_bytes()).to_hex().to_string(), ..self }
     }
 
     fn material(&self) -> Material {
@@ -225,7 +236,7 @@ impl Painter {
         while busy.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(30));
         }
-        let picture = self.draw(subject.material()).map_err(|e| format!("Pictures of presets: {e}"))?;
+        let picture = self.draw(subject).map_err(|e| format!("Pictures of presets: {e}"))?;
         if let (Some(folder), Some(path)) = (&self.folder, path) {
             // A ball that cannot be kept is drawn again next time.
             let _ = std::fs::create_dir_all(folder);
@@ -234,7 +245,7 @@ impl Painter {
         Ok(image(&picture))
     }
 
-    fn draw(&mut self, material: Material) -> Result<Picture, burnish_render::RenderError> {
+    fn draw(&mut self, subject: &Subject) -> Result<Picture, burnish_render::RenderError> {
         let (renderer, scene) = match &mut self.renderer {
             Some(made) => made,
             None => {
@@ -244,7 +255,15 @@ impl Painter {
             }
         };
         let mut changed = Scene::clone(scene);
-        changed.materials = vec![material];
+        changed.materials = vec![subject.material()];
+        changed.lights.clone_from(&subject.lights);
+        // Lamps of a preset are seen in the ball, not beside it.
+        changed.lights.iter_mut().for_each(|light| light.camera = false);
+        if let Some(studio) = &mut changed.environment
+            && studio.strength != subject.strength
+        {
+            *studio = Arc::new(Environment { strength: subject.strength, ..Environment::clone(studio) });
+        }
         *scene = Arc::new(changed);
         renderer.set_scene(scene)?;
         let view = View {

@@ -92,6 +92,11 @@ impl UserPresets {
         UserPresets { folder, waiting, ..UserPresets::default() }
     }
 
+    /// Where they are kept; `None` for a user without a home.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
     /// What is in the folder.
     pub fn listing(&self) -> &Arc<Listing> {
         &self.listing

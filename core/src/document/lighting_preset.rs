@@ -89,6 +89,15 @@ const FILES: &[(&str, &str)] = &[
 static LIBRARY: LazyLock<Vec<LightingPreset>> =
     LazyLock::new(|| FILES.iter().filter_map(|(file, text)| LightingPreset::parse(text, file).ok()).collect());
 
+/// An id made of a name: its letters and digits, with `-` between.
+fn id_of(name: &str) -> String {
+    let plain =
+        name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' }).collect::<String>();
+    let id: String = plain.split_whitespace().collect::<Vec<_>>().join("-").chars().take(64).collect();
+    let id = id.trim_matches('-');
+    if id.is_empty() { "lights".into() } else { id.into() }
+}
+
 /// Middle and radius of what a preset stands around; of a sphere of 1 m where there is nothing.
 fn sphere(subject: Bounds) -> (Vec3, f64) {
     let radius = f64::from(subject.radius());
@@ -180,7 +189,7 @@ impl LightingPreset {
     }
 
     /// The lights of a document around its subject as a preset, the inverse of [`Document::apply_lighting`].
-    pub fn of_document(name: &str, id: &str, document: &Document, model: &Scene, subject: Bounds) -> LightingPreset {
+    pub fn of_document(name: &str, document: &Document, model: &Scene, subject: Bounds) -> LightingPreset {
         let (center, radius) = sphere(subject);
         let place = |mut light: LightEntry| {
             light.set_place(light.place() - center);
@@ -191,7 +200,7 @@ impl LightingPreset {
         LightingPreset {
             format: FORMAT.into(),
             version: VERSION,
-            id: id.into(),
+            id: id_of(name),
             name: name.into(),
             note: String::new(),
             environment: Some(document.environment.clone()),
@@ -242,8 +251,8 @@ mod tests {
         for preset in LightingPreset::library() {
             let mut document = Document::new("gallery:workbench".into());
             document.apply_lighting(preset, subject);
-            let back = LightingPreset::of_document("b", "b", &document, &model, subject);
-            assert_eq!(back.lights.len(), preset.lights.len());
+            let back = LightingPreset::of_document("My set, 2", &document, &model, subject);
+            assert_eq!((back.id.as_str(), back.lights.len()), ("my-set-2", preset.lights.len()));
             for (a, b) in back.lights.iter().zip(&preset.lights) {
                 assert!((a.place() - b.place()).length() < 1e-4, "{} {}", preset.id, a.name);
                 assert!((a.power / b.power - 1.0).abs() < 1e-5 && a.unit == b.unit);

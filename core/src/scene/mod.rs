@@ -204,6 +204,19 @@ impl Scene {
         bounds
     }
 
+    /// Box around what a picture is about: the visible instances of the subject, of all where that has none.
+    pub fn subject_bounds(&self) -> Bounds {
+        let of = |index: usize| self.instances.get(index).filter(|instance| instance.visible);
+        let around = |indices: &mut dyn Iterator<Item = usize>| {
+            indices.filter_map(of).fold(Bounds::EMPTY, |bounds, instance| {
+                let place = |p: &Vec3| instance.world_from_local.transform_point3(*p);
+                self.meshes[instance.mesh].positions.iter().map(place).fold(bounds, Bounds::including)
+            })
+        };
+        let subject = around(&mut self.subject.iter().copied());
+        if subject.is_empty() { around(&mut (0..self.instances.len())) } else { subject }
+    }
+
     /// Triangles of all instances.
     pub fn triangle_count(&self) -> usize {
         self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3).sum()

@@ -7,6 +7,7 @@ mod bench;
 mod chart;
 mod compare;
 mod import;
+mod lights;
 mod looks;
 mod monkey;
 mod reference;
@@ -19,6 +20,7 @@ fn main() {
     let trials = [
         workflow::trials(),
         import::trials(),
+        lights::trials(),
         looks::trials(),
         compare::trials(),
         chart::trials(),

@@ -4,6 +4,7 @@ mod chart;
 mod compare;
 mod environment;
 mod history;
+mod lights;
 mod material;
 mod presets;
 mod reflectance;
@@ -31,6 +32,7 @@ pub use chart::ChartPanel;
 pub use compare::ComparePanel;
 pub use environment::EnvironmentPanel;
 pub use history::HistoryPanel;
+pub use lights::LightsPanel;
 pub use material::MaterialPanel;
 pub use presets::{FormSettings, PresetsPanel, assign, f0, f0_ui, forms_ui, warning_ui};
 pub use reflectance::ReflectancePanel;
@@ -80,6 +82,8 @@ pub enum Pane {
     Material,
     /// Metals.
     Presets,
+    /// Lamps.
+    Lights,
     /// Light and view.
     Environment,
     /// Snapshots and what differs between two.
@@ -94,11 +98,12 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Pane; 9] = [
+    pub const ALL: [Pane; 10] = [
         Pane::Viewport,
         Pane::Scene,
         Pane::Material,
         Pane::Presets,
+        Pane::Lights,
         Pane::Environment,
         Pane::Compare,
         Pane::Chart,
@@ -113,6 +118,7 @@ impl Pane {
             Pane::Scene => "Scene",
             Pane::Material => "Material",
             Pane::Presets => "Presets",
+            Pane::Lights => "Lights",
             Pane::Environment => "Environment",
             Pane::Compare => "Compare",
             Pane::Chart => "Chart",
@@ -137,6 +143,7 @@ pub struct Panels {
     material: MaterialPanel,
     /// Also shows what came in.
     pub presets: PresetsPanel,
+    lights: LightsPanel,
     environment: EnvironmentPanel,
     compare: ComparePanel,
     chart: ChartPanel,
@@ -151,6 +158,7 @@ impl Panels {
             Pane::Scene => self.scene.ui(ui, context),
             Pane::Material => self.material.ui(ui, context),
             Pane::Presets => self.presets.ui(ui, context),
+            Pane::Lights => self.lights.ui(ui, context),
             Pane::Environment => self.environment.ui(ui, context),
             Pane::Compare => self.compare.ui(ui, context),
             Pane::Chart => self.chart.ui(ui, context),

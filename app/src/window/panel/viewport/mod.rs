@@ -3,6 +3,7 @@
 mod cameras;
 mod compare;
 mod gizmo;
+mod lamps;
 mod navigation;
 mod overlay;
 mod readout;
@@ -14,7 +15,9 @@ use burnish_core::document::Side;
 use burnish_core::scene::Picked;
 use burnish_render::Frame;
 use eframe::egui::emath::GuiRounding;
-use eframe::egui::{self, Align2, Color32, Event, Modifiers, Rect, Response, Role, Sense, WidgetInfo, pos2};
+use eframe::egui::{
+    self, Align2, Color32, Event, Modifiers, PointerButton, Rect, Response, Role, Sense, WidgetInfo, pos2,
+};
 use glam::UVec2;
 
 use super::{Context, DraggedPreset};
@@ -142,13 +145,22 @@ impl ViewportPanel {
     fn drag(&mut self, response: &Response, context: &mut Context<'_>) {
         for button in BUTTONS {
             if response.drag_started_by(button) {
-                self.gesture = navigation::gesture(context.preferences.navigation, button, self.held);
+                let places = button == PointerButton::Primary && self.tools.tool.places_light();
+                self.gesture = match places {
+                    true => Some(Gesture::PlaceLight),
+                    false => navigation::gesture(context.preferences.navigation, button, self.held),
+                };
             }
         }
         let feel = Feel::new(context.preferences);
         let by = response.drag_delta();
         match self.gesture {
             Some(_) if by == egui::Vec2::ZERO => {}
+            Some(Gesture::PlaceLight) => {
+                if let Some(pointer) = response.interact_pointer_pos() {
+                    self.place_light(response, context, pointer, by);
+                }
+            }
             Some(Gesture::TurnLight) => context.session.edit("Rotate environment", "", |document| {
                 let turned = navigation::turned(document.environment.rotation_deg, by.x, feel);
                 document.environment.rotation_deg = turned;
@@ -158,8 +170,19 @@ impl ViewportPanel {
             }),
             None => {}
         }
-        if response.drag_stopped() && self.gesture.take() == Some(Gesture::TurnLight) {
+        let ended = if response.drag_stopped() { self.gesture.take() } else { None };
+        if matches!(ended, Some(Gesture::TurnLight | Gesture::PlaceLight)) {
             context.session.seal();
+        }
+    }
+
+    /// Puts the selected light where its effect is wanted.
+    fn place_light(&mut self, response: &Response, context: &mut Context<'_>, pointer: egui::Pos2, by: egui::Vec2) {
+        let rect = picture_rect(response, context, pointer);
+        let sight = Sight { camera: context.session.document().view.camera.camera(), rect };
+        if let Err(obstacle) = self.tools.place_light(context.session, &sight, pointer, by) {
+            context.requests.push(Request::Notice(obstacle.into()));
+            self.gesture = None;
         }
     }
 
@@ -169,6 +192,10 @@ impl ViewportPanel {
             return;
         }
         let Some(pointer) = response.interact_pointer_pos() else { return };
+        if self.tools.tool.places_light() {
+            self.place_light(response, context, pointer, egui::Vec2::ZERO);
+            return context.session.seal();
+        }
         let at = overlay::relative(picture_rect(response, context, pointer), pointer);
         let picked = pick(context, frame, at);
         select(context.session, picked, self.held.shift);
@@ -378,6 +405,7 @@ fn wheel(wheel: Wheel, context: &mut Context<'_>) {
 fn select(session: &mut Session, picked: Option<Picked>, add: bool) {
     let key = picked.and_then(|picked| session.resolved().object_keys.get(picked.instance).cloned());
     let material = picked.and_then(|picked| material_of(session, picked));
+    session.selection.lights.clear();
     let objects = &mut session.selection.objects;
     match key {
         Some(key) if add && objects.contains(&key) => objects.retain(|other| *other != key),

@@ -27,6 +27,8 @@ pub enum Gesture {
     Zoom,
     /// Turns the environment.
     TurnLight,
+    /// Puts the selected light by its highlight, its shadow, or around the subject.
+    PlaceLight,
 }
 
 /// Buttons that gestures begin with.
@@ -97,7 +99,7 @@ pub fn drag_camera(camera: &mut CameraEntry, gesture: Gesture, by: Vec2, height:
         // A shift keeps what is under the pointer there, whatever the speed.
         Gesture::Pan => camera.pan(x / f64::from(height.max(1.0)), -y / f64::from(height.max(1.0))),
         Gesture::Zoom => camera.zoom(feel.zoom(ZOOM_PER_POINT * (x - y))),
-        Gesture::TurnLight => {}
+        Gesture::TurnLight | Gesture::PlaceLight => {}
     }
 }
 

@@ -90,7 +90,7 @@ pub fn tools_ui(ui: &mut egui::Ui, rect: Rect, tool: Tool, requests: &mut Reques
         let command = Command::Tool(other);
         Choice { label: other.title(), on: other == tool, hover: other.help(), command }
     });
-    row_ui(ui, (rect, Align2::LEFT_TOP), 180.0, &choices, requests)
+    row_ui(ui, (rect, Align2::LEFT_TOP), 380.0, &choices, requests)
 }
 
 /// A row of buttons in a corner; returns where it ends below.

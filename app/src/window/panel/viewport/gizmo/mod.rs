@@ -92,9 +92,10 @@ impl Gizmo {
     }
 }
 
-/// What stands around a place; `None` behind the camera.
+/// What stands around a place; `None` where it is not in the picture.
 fn shapes(sight: &Sight, mode: Mode, at: Vec3) -> Option<Vec<Shape>> {
-    let (center, metres) = (sight.project(at)?, sight.metres_per_point(at)?);
+    let center = sight.project(at).filter(|center| sight.rect.contains(*center))?;
+    let metres = sight.metres_per_point(at)?;
     let reach = REACH * metres;
     let mut shapes = Vec::new();
     for (axis, color) in AXES.into_iter().enumerate() {

@@ -1,0 +1,92 @@
+//! Marks of the lights in the picture: where they stand, how large they are, where they shine. A click selects one.
+
+use burnish_core::document::{LightEntry, Shape};
+use eframe::egui::{self, Color32, Pos2, Rect, Role, Sense, Stroke, Vec2, WidgetInfo};
+use glam::Vec3;
+
+use super::gizmo::Sight;
+use super::overlay::SHADE;
+use crate::window::lights;
+use crate::window::session::Session;
+
+/// Radius of a mark, points.
+const MARK: f32 = 5.0;
+/// Points that take hold of it.
+const GRIP: f32 = 18.0;
+/// Sides of a circle.
+const AROUND: usize = 32;
+/// Length of the line that shows where a light without a size shines, points.
+const AIM: f32 = 46.0;
+
+/// Shows the marks of all lights with a place, and of selected suns.
+pub fn ui(ui: &mut egui::Ui, sight: &Sight, session: &mut Session) {
+    let mut clicked = None;
+    for (place, light) in lights::entries(session).iter().enumerate() {
+        let chosen = session.selection.lights.contains(&light.name);
+        if !light.shape.has_place() && !chosen {
+            continue;
+        }
+        let Some(at) = sight.project(light.place()).filter(|at| sight.rect.contains(*at)) else { continue };
+        let color = mark_color(ui, light, chosen);
+        let painter = ui.painter_at(sight.rect);
+        let stroke = |width: f32, color: Color32| Stroke::new(width, color);
+        for line in outline(sight, light) {
+            painter.line(line.clone(), stroke(3.0, SHADE));
+            painter.line(line, stroke(1.5, color));
+        }
+        painter.circle(at, MARK, if light.muted { SHADE } else { color }, stroke(1.5, SHADE));
+        let id = ui.scope_id().with(("lamp", place));
+        let grip = ui.interact(Rect::from_center_size(at, Vec2::splat(GRIP)), id, Sense::click());
+        let name = &light.name;
+        grip.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, format!("Mark of {name}")));
+        let grip = grip.on_hover_text(format!("{name}, {}", light.shape.title().to_lowercase()));
+        if grip.clicked() {
+            clicked = Some((name.clone(), ui.input(|input| input.modifiers.shift)));
+        }
+    }
+    if let Some((name, add)) = clicked {
+        lights::select(session, &name, add);
+    }
+}
+
+fn mark_color(ui: &egui::Ui, light: &LightEntry, chosen: bool) -> Color32 {
+    match (chosen, light.muted) {
+        (true, _) => ui.visuals().selection.bg_fill.gamma_multiply(1.6),
+        (false, true) => Color32::from_gray(120),
+        (false, false) => Color32::from_rgb(240, 228, 66),
+    }
+}
+
+/// Lines of its size and of where it shines, as far as they are before the camera.
+fn outline(sight: &Sight, light: &LightEntry) -> Vec<Vec<Pos2>> {
+    let (place, turn) = (light.place(), light.rotation());
+    let (x, y, aim) = (turn * Vec3::X, turn * Vec3::Y, light.direction());
+    let line = |points: &[Vec3]| points.iter().map(|point| sight.project(*point)).collect::<Option<Vec<Pos2>>>();
+    let circle = |center: Vec3, u: Vec3, v: Vec3| -> Vec<Vec3> {
+        let turn = |i: usize| (std::f32::consts::TAU * i as f32 / AROUND as f32).sin_cos();
+        (0..=AROUND).map(turn).map(|(sin, cos)| center + cos * u + sin * v).collect()
+    };
+    let aim_length = AIM * sight.metres_per_point(place).unwrap_or(0.0);
+    let arrow = line(&[place, place + aim_length * aim]);
+    let lines = match light.shape {
+        Shape::Point => vec![],
+        Shape::Sun { .. } => vec![arrow],
+        Shape::Spot { outer_deg, .. } => {
+            let end = place + aim_length * aim;
+            let radius = aim_length * outer_deg.clamp(0.0, 80.0).to_radians().tan() as f32;
+            let rim = circle(end, radius * x, radius * y);
+            let edges = [0, AROUND / 4, AROUND / 2, 3 * AROUND / 4].map(|i| line(&[place, rim[i]]));
+            edges.into_iter().chain([line(&rim)]).collect()
+        }
+        Shape::Rectangle { width, height } => {
+            let (u, v) = (0.5 * width as f32 * x, 0.5 * height as f32 * y);
+            vec![line(&[place - u - v, place + u - v, place + u + v, place - u + v, place - u - v]), arrow]
+        }
+        Shape::Sphere { radius } => {
+            let back = sight.toward_eye(place);
+            let u = back.any_orthonormal_vector() * radius as f32;
+            vec![line(&circle(place, u, back.cross(u)))]
+        }
+    };
+    lines.into_iter().flatten().collect()
+}

@@ -77,6 +77,8 @@ pub enum ParamKind {
 pub enum Affects {
     /// The preparation of the method.
     Prepare,
+    /// The materials, into which it is resolved; with them what is prepared of materials.
+    Materials,
     /// Only the next frame.
     Frame,
 }

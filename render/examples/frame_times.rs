@@ -44,7 +44,15 @@ fn main() -> Result<(), Failure> {
         _ => Camera::frame(scene.bounds(), aspect),
     };
     let settings = Settings::new(classical::PARAMS);
-    let mut frame = Frame { size, camera, settings, tone: ToneMap::Neutral, exposure_ev: 0.0, moving: true };
+    let mut frame = Frame {
+        size,
+        camera,
+        settings,
+        tone: ToneMap::Neutral,
+        exposure_ev: 0.0,
+        mode: Default::default(),
+        moving: true,
+    };
     report("first picture", &viewport.draw(&frame)?);
     println!("{:<24}{:8.1} ms\n", "all that", start.elapsed().as_secs_f64() * 1e3);
     println!("{} triangles on {}", scene.triangle_count(), gpu.report().name);

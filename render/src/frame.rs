@@ -91,7 +91,7 @@ impl Encoding {
         targets: &Targets,
         rows: Range<u32>,
     ) {
-        let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights];
+        let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights, &resident.background.group];
         passes.classical.encode(encoder, &targets.frame, groups, self.samples, rows);
     }
 
@@ -136,15 +136,15 @@ fn view_data(
     };
     let clip_from_world = clip_from_world(camera, size, jitter);
     let Resident { scene, maps, shadows, .. } = resident;
-    let (rotation, strength) = scene.environment.as_ref().map_or((0.0, 1.0), |e| (e.rotation, e.strength));
+    let (rotation, scale) = scene.environment.as_ref().map_or((0.0, Vec3::ONE), |e| (e.rotation, e.scale()));
     ViewData {
         clip_from_world,
         world_from_clip: clip_from_world.inverse(),
         viewer: viewer(camera),
+        environment_scale: maps.scale * scale,
+        environment_mips: maps.radiance.mip_level_count() as f32,
         environment_cos: rotation.cos(),
         environment_sin: rotation.sin(),
-        environment_scale: maps.scale * strength,
-        environment_mips: maps.radiance.mip_level_count() as f32,
         size,
         light_count: shadows.light_count,
         samples: settings.samples,
@@ -156,6 +156,8 @@ fn view_data(
         wide_alpha: maps.wide_alpha,
         contribution: contribution(settings.contribution),
         unlit_words: shadows.unlit_words,
+        pad0: 0,
+        pad1: 0,
     }
 }
 

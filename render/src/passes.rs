@@ -8,7 +8,7 @@ use crate::device::Gpu;
 use crate::pass::accumulate::AccumulatePass;
 use crate::pass::classical::{ClassicalPass, light_layout};
 use crate::pass::display::DisplayPass;
-use crate::pass::environment::EnvironmentPass;
+use crate::pass::environment::{EnvironmentPass, background_layout};
 use crate::pass::forward::ForwardPass;
 use crate::pass::gbuffer::GBufferPass;
 use crate::pass::scene_layout;
@@ -21,6 +21,7 @@ pub struct Passes {
     pub(crate) scene_layout: wgpu::BindGroupLayout,
     pub(crate) material_layout: wgpu::BindGroupLayout,
     pub(crate) light_layout: wgpu::BindGroupLayout,
+    pub(crate) background_layout: wgpu::BindGroupLayout,
     pub(crate) environment: EnvironmentPass,
     pub(crate) shadow: ShadowPass,
     pub(crate) gbuffer: GBufferPass,
@@ -37,6 +38,7 @@ impl Passes {
         let material_layout = material_layout(device);
         let scene_layout = scene_layout(device);
         let light_layout = light_layout(device);
+        let background_layout = background_layout(device);
         let mesh = [Some(&scene_layout), Some(&material_layout)];
         let lit = [Some(&scene_layout), Some(&material_layout), Some(&light_layout)];
         let format = frame_format(gpu);
@@ -45,13 +47,14 @@ impl Passes {
             environment: EnvironmentPass::new(gpu),
             shadow: ShadowPass::new(gpu, &mesh),
             gbuffer: GBufferPass::new(gpu, &mesh),
-            classical: ClassicalPass::new(gpu, &scene_layout, &light_layout, format),
+            classical: ClassicalPass::new(gpu, &scene_layout, &light_layout, &background_layout, format),
             forward: ForwardPass::new(gpu, &lit, format),
             accumulate: AccumulatePass::new(gpu),
             display: DisplayPass::new(gpu),
             scene_layout,
             material_layout,
             light_layout,
+            background_layout,
         }
     }
 

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
+use burnish_core::measure::view::DisplayMode;
 use burnish_core::picture::Picture;
 use glam::UVec2;
 
 use crate::device::Gpu;
 use crate::error::RenderError;
-use crate::pass::{display, target};
+use crate::pass::display::{self, Display};
+use crate::pass::target;
 use crate::passes::Passes;
 use crate::renderer::check_size;
 
@@ -19,7 +21,7 @@ pub struct Plate {
     /// Scene-linear radiance, and what the screen shows of it.
     textures: Option<(wgpu::Texture, wgpu::TextureView)>,
     /// What the textures hold.
-    shown: Option<(Arc<Picture>, ToneMap, f32)>,
+    shown: Option<(Arc<Picture>, Display)>,
 }
 
 impl Plate {
@@ -30,6 +32,11 @@ impl Plate {
 
     /// Shows a picture; only what differs from the last call is done anew.
     pub fn draw(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Result<(), RenderError> {
+        self.draw_as(picture, Display { tone, exposure_ev, mode: DisplayMode::Picture })
+    }
+
+    /// The same in any mode of the display.
+    pub fn draw_as(&mut self, picture: &Arc<Picture>, display: Display) -> Result<(), RenderError> {
         let passes = self.passes.clone();
         let gpu = &passes.gpu;
         gpu.check()?;
@@ -38,7 +45,7 @@ impl Plate {
         debug_assert!(picture.is_whole());
         let known = self.shown.as_ref();
         let loaded = known.is_some_and(|(old, ..)| Arc::ptr_eq(old, picture));
-        if loaded && known.is_some_and(|(_, t, ev)| (*t, *ev) == (tone, exposure_ev)) {
+        if loaded && known.is_some_and(|(_, last)| *last == display) {
             return Ok(());
         }
         if size != self.size {
@@ -50,9 +57,9 @@ impl Plate {
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let sum = (&radiance.create_view(&Default::default()), 1);
-        passes.display.encode(gpu, &mut encoder, sum, output, (tone, exposure_ev));
+        passes.display.encode(gpu, &mut encoder, sum, output, display);
         gpu.queue.submit([encoder.finish()]);
-        self.shown = Some((picture.clone(), tone, exposure_ev));
+        self.shown = Some((picture.clone(), display));
         Ok(gpu.check()?)
     }
 

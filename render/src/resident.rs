@@ -11,7 +11,7 @@ use glam::Vec3;
 
 use crate::error::RenderError;
 use crate::pass::classical::light_group;
-use crate::pass::environment::EnvironmentMaps;
+use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
 use crate::passes::Passes;
 use crate::scene::{GpuScene, MaterialGroups};
@@ -47,6 +47,8 @@ pub(crate) struct Resident {
     /// The quality of the maps.
     pub quality: Quality,
     pub shadows: Shadows,
+    /// What is seen where no surface is.
+    pub background: BackgroundMap,
     /// Bind group 2 of what lights surfaces.
     pub lights: wgpu::BindGroup,
     bounds: Bounds,
@@ -102,8 +104,21 @@ impl Loader {
             }),
         };
         let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, &tables.buffer);
+        let seen = before.map(|before| &before.background);
+        let background = BackgroundMap::new(gpu, &passes.background_layout, scene, seen)?;
         gpu.check()?;
-        Ok(Resident { scene: scene.clone(), masking, on_gpu, maps, quality, shadows, lights, bounds, tables })
+        Ok(Resident {
+            scene: scene.clone(),
+            masking,
+            on_gpu,
+            maps,
+            quality,
+            shadows,
+            background,
+            lights,
+            bounds,
+            tables,
+        })
     }
 
     /// Takes over cubes that were prepared in full for an environment; scenes loaded from now on have them.

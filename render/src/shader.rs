@@ -3,6 +3,8 @@
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::{area, classical};
+use burnish_core::measure::view;
+use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
 
 /// A shader module, joined from leaves and the pass's own files.
@@ -46,8 +48,17 @@ pub static ENVIRONMENT: Shader = Shader {
 /// Lights the G-buffer.
 pub static CLASSICAL: Shader = Shader {
     name: "classical",
-    leaves: &[&classical::WGSL, &area::WGSL],
-    files: &[TYPES, TEXEL, SCENE_BINDINGS, SHADE, LAMPS, SOFT, include_str!("pass/classical/classical.wgsl")],
+    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SHADE,
+        LAMPS,
+        SOFT,
+        include_str!("pass/environment/background.wgsl"),
+        include_str!("pass/classical/classical.wgsl"),
+    ],
 };
 
 /// Blended surfaces.
@@ -62,8 +73,11 @@ pub static ACCUMULATE: Shader =
     Shader { name: "accumulate", leaves: &[], files: &[include_str!("pass/accumulate/accumulate.wgsl")] };
 
 /// Shows a picture on a screen.
-pub static DISPLAY: Shader =
-    Shader { name: "display", leaves: &[&tone::LEAF], files: &[TYPES, include_str!("pass/display/display.wgsl")] };
+pub static DISPLAY: Shader = Shader {
+    name: "display",
+    leaves: &[&tone::LEAF, &view::LEAF],
+    files: &[TYPES, include_str!("pass/display/display.wgsl")],
+};
 
 /// Times reflectance curves.
 pub static TIMES: Shader =

@@ -5,6 +5,8 @@
 
 #[path = "images/area.rs"]
 mod area;
+#[path = "images/background.rs"]
+mod background;
 #[path = "images/bumps.rs"]
 mod bumps;
 #[path = "images/environment.rs"]
@@ -48,6 +50,7 @@ fn main() {
     trials.push(trial("a lost device is an error from then on", &[Need::Gpu], lost_device));
     trials.extend(scenes::ALL.iter().map(|(name, build)| picture(name, *build)));
     trials.extend(area::trials());
+    trials.extend(background::trials());
     trials.extend(bumps::trials());
     trials.extend(environment::trials());
     trials.extend(losses::trials());

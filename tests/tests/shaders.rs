@@ -6,6 +6,7 @@ use std::f32::consts;
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
 use burnish_core::lighting::{area, classical};
+use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
 use burnish_core::surface::{coat, fresnel, layered, micro_normal};
@@ -145,6 +146,14 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("TONE_AGX", ToneMap::AgX.number().into()),
             ("TONE_ACES", ToneMap::Aces.number().into()),
             ("MAX_LINEAR", tone::MAX_LINEAR.into()),
+        ],
+        "view" => vec![
+            ("DISPLAY_PICTURE", view::DISPLAY_PICTURE.into()),
+            ("DISPLAY_FALSE_COLOR", view::DISPLAY_FALSE_COLOR.into()),
+            ("DISPLAY_CLIPPING", view::DISPLAY_CLIPPING.into()),
+            ("MIDDLE_GREY", view::MIDDLE_GREY.into()),
+            ("CLIP_OVER", view::CLIP_OVER.into()),
+            ("CLIP_UNDER", view::CLIP_UNDER.into()),
         ],
         "fresnel" => vec![
             ("FRESNEL_RESCALED", fresnel::RESCALED.into()),

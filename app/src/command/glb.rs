@@ -33,7 +33,7 @@ pub fn map_beside(file: &Path) -> PathBuf {
 
 /// The radiance as it lights the scene, but not turned.
 fn write_map(map: &Environment, file: &Path) -> Result<(), Failure> {
-    let texels = map.texels.iter().map(|radiance| (map.strength * *radiance).extend(1.0)).collect();
+    let texels = map.texels.iter().map(|radiance| (map.scale() * *radiance).extend(1.0)).collect();
     let picture = Picture { width: map.width, height: map.height, texels };
     write_picture(&picture, file, ToneMap::None, 0.0).map_err(Failure::resources)
 }

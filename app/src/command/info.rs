@@ -121,8 +121,18 @@ struct EnvironmentInfo {
 
 impl Info {
     fn of(opened: &Opened) -> Info {
-        let Scene { name, meshes, instances, materials, images, lights, cameras, environment, subject: _ } =
-            &opened.scene;
+        let Scene {
+            name,
+            meshes,
+            instances,
+            materials,
+            images,
+            lights,
+            cameras,
+            environment,
+            background: _,
+            subject: _,
+        } = &opened.scene;
         let bounds = opened.scene.bounds();
         Info {
             name: name.clone(),

@@ -3,6 +3,7 @@
 mod chart;
 mod compare;
 mod doctor;
+mod environment;
 mod export;
 mod fit;
 mod fresnel_balls;
@@ -35,6 +36,8 @@ pub enum Command {
     Export(export::Args),
     /// List, render or write the built-in scenes
     Gallery(gallery::Args),
+    /// Make an environment map: a sky, a studio, or a map without its sun
+    Environment(environment::Args),
     /// List what a scene consists of
     Info(info::Args),
     /// List the metal presets, or the errors of their Fresnel forms
@@ -67,6 +70,7 @@ impl Command {
             Command::Render(args) => render::run(args, out, err),
             Command::Export(args) => export::run(args, out, err),
             Command::Gallery(args) => gallery::run(args, out, err),
+            Command::Environment(args) => environment::run(args, out),
             Command::Info(args) => info::run(args, out),
             Command::Presets(args) => presets::run(args, out),
             Command::Fit(args) => fit::run(args, out),

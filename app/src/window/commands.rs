@@ -4,7 +4,7 @@ use burnish_core::document::Side;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::compare::CompareView;
-use super::panel::Pane;
+use super::panel::{Pane, Tool};
 use super::session::Session;
 
 /// What a user can ask for without an argument.
@@ -74,6 +74,8 @@ pub enum Command {
     SwapSides,
     /// Keeps the document under a name.
     TakeSnapshot,
+    /// Another tool of the picture.
+    Tool(Tool),
     /// What importers said.
     Notices,
     /// Shows a panel or puts it away.
@@ -177,6 +179,10 @@ const fn panel(pane: Pane, title: &'static str, help: &'static str) -> Entry {
     entry(Menu::View, Command::Panel(pane), title, None, help)
 }
 
+const fn tool(tool: Tool, title: &'static str, shortcut: Key, help: &'static str) -> Entry {
+    entry(Menu::Object, Command::Tool(tool), title, key(shortcut), help)
+}
+
 const fn compare(view: CompareView, title: &'static str, shortcut: Key, help: &'static str) -> Entry {
     entry(Menu::Compare, Command::Compare(view), title, key(shortcut), help)
 }
@@ -227,6 +233,10 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::Object, Command::Hide, "Hide", key(Key::H), "Hide the selected objects."),
     entry(Menu::Object, Command::Isolate, "Isolate", key(Key::I), "Hide all other objects."),
     entry(Menu::Object, Command::ShowAll, "Show all", ctrl_shift(Key::H), "Show every object."),
+    tool(Tool::Select, "Select tool", Key::Q, "A click selects, a drag moves the camera."),
+    tool(Tool::Move, "Move tool", Key::G, "Handles in the picture move what is selected."),
+    tool(Tool::Rotate, "Turn tool", Key::T, "Handles in the picture turn what is selected."),
+    tool(Tool::Scale, "Scale tool", Key::Y, "Handles in the picture scale what is selected."),
     compare(CompareView::Wipe, "Wipe", Key::W, "Side A left of a line that is dragged, side B right of it."),
     compare(CompareView::SideBySide, "Side by side", Key::S, "Side A in the left half, side B in the right one."),
     compare(CompareView::Difference, "Difference", Key::D, "Where side B differs from side A, as a heat map."),
@@ -305,6 +315,7 @@ impl Entry {
                 | Command::CopyMaterial
                 | Command::ApplyToSelected
                 | Command::Hide
+                | Command::Tool(Tool::Select)
                 | Command::ViewFront
                 | Command::SaveCamera
                 | Command::Reference

@@ -129,6 +129,12 @@ impl Preparation {
         Preparation { store, ..Preparation::default() }
     }
 
+    /// The same, but it makes one anew after every edit, however long that takes: for pictures without a badge.
+    #[must_use]
+    pub fn always_anew(self) -> Preparation {
+        Preparation { quick: Duration::MAX, ..self }
+    }
+
     /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
     pub fn follow(&mut self, method: &'static dyn Method, settings: Settings, scene: &Arc<Scene>, ctx: &egui::Context) {
         let subject = Subject { method, settings, scene: scene.clone() };
@@ -218,6 +224,11 @@ impl Preparation {
         self.fault.as_deref()
     }
 
+    /// For which method.
+    pub fn method(&self) -> Option<&'static dyn Method> {
+        self.subject.as_ref().map(|subject| subject.method)
+    }
+
     /// Another thread works on it.
     pub fn is_busy(&self) -> bool {
         self.job.is_some()
@@ -292,6 +303,9 @@ mod tests {
         assert!(!Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
         // Back again: stale, not lost.
         assert_eq!(settle(&mut preparation, &scene), State::Stale);
+        let mut preparation = preparation.always_anew();
+        assert_eq!(settle(&mut preparation, &brighter), State::Fresh);
+        assert_eq!(settle(&mut preparation, &scene), State::Fresh, "it took too long, and is made all the same");
         // Another method has none of it, and always the same nothing.
         let nothing = || preparation.prepared(&burnish_core::reference::Reference).unwrap();
         assert!(nothing().is_nothing() && Arc::ptr_eq(&nothing(), &nothing()));

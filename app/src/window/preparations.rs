@@ -12,6 +12,7 @@ use super::preparation::Preparation;
 /// Preparations in the order of the layers that asked first.
 pub struct Preparations {
     store: Store,
+    always_anew: bool,
     each: Vec<(Asked, Preparation)>,
 }
 
@@ -24,7 +25,13 @@ pub fn drawn_on_device(layers: &Layers) -> bool {
 impl Preparations {
     /// Keeps preparations in a folder.
     pub fn new(store: Store) -> Preparations {
-        Preparations { store, each: Vec::new() }
+        Preparations { store, always_anew: false, each: Vec::new() }
+    }
+
+    /// The same, but they are made anew after every edit, see [`Preparation::always_anew`].
+    #[must_use]
+    pub fn always_anew(self) -> Preparations {
+        Preparations { always_anew: true, ..self }
     }
 
     /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
@@ -39,21 +46,23 @@ impl Preparations {
             if asked.contains(&by) {
                 continue;
             }
+            let known = self.each.iter().position(|(known, _)| *known == by);
             // The scene's method keeps its stale preparation when a setting changes.
-            let place = match asked.is_empty() {
-                true => (!self.each.is_empty()).then_some(0),
-                false => self.each.iter().position(|(known, _)| *known == by),
-            };
-            let place = place.unwrap_or_else(|| {
-                self.each.push((by.clone(), Preparation::new(self.store.clone())));
+            let stale = (asked.is_empty() && !self.each.is_empty()).then_some(0);
+            let place = known.or(stale).unwrap_or_else(|| {
+                let preparation = Preparation::new(self.store.clone());
+                let preparation = if self.always_anew { preparation.always_anew() } else { preparation };
+                self.each.push((by.clone(), preparation));
                 self.each.len() - 1
             });
-            let (known, preparation) = &mut self.each[place];
-            *known = by.clone();
+            // In the order of those who asked; what nobody asked for comes last.
+            self.each.swap(asked.len(), place);
+            let (known, preparation) = &mut self.each[asked.len()];
+            known.clone_from(&by);
             preparation.follow(layer.method, layer.settings.clone(), scene, ctx);
             asked.push(by);
         }
-        self.each.retain(|(known, _)| asked.contains(known));
+        self.each.truncate(asked.len());
     }
 
     /// Gives back what is held, and ends what runs.
@@ -61,9 +70,9 @@ impl Preparations {
         self.each.clear();
     }
 
-    /// That of the scene's method; `None` where it needs none.
-    pub fn first(&mut self) -> Option<&mut Preparation> {
-        self.each.first_mut().map(|(_, preparation)| preparation)
+    /// All of them, that of the scene's method first; none where the device draws the scene.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Preparation> {
+        self.each.iter_mut().map(|(_, preparation)| preparation)
     }
 
     /// What there is for each layer, perhaps stale; `None` until all have something.
@@ -89,9 +98,10 @@ impl Preparations {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use burnish_core::lighting::{Method, classical};
-    use burnish_core::param::Settings;
-    use burnish_core::reference;
+    use burnish_core::job::Handle;
+    use burnish_core::lighting::{Coverage, Method, MethodError, MethodId, MethodInfo, Reads, ShadePoint, classical};
+    use burnish_core::param::{Affects, ParamKind, ParamSpec, Settings};
+    use burnish_core::reference::{self, SurfacePoint, World};
     use burnish_core::scene::{Environment, gallery};
     use glam::Vec3;
 
@@ -110,7 +120,7 @@ mod tests {
         let ctx = egui::Context::default();
         let mut preparations = Preparations::new(Store::none());
         preparations.follow(&one, &scene, &ctx);
-        assert!(drawn_on_device(&one) && preparations.first().is_none());
+        assert!(drawn_on_device(&one) && preparations.each.is_empty());
         let mixed = one.with(layer(classical, "64")).with(layer(&reference::Reference, "1"));
         assert!(!drawn_on_device(&mixed));
         while preparations.prepared(&mixed).is_none() {
@@ -120,5 +130,79 @@ mod tests {
         let prepared = preparations.prepared(&mixed).unwrap();
         assert!(Arc::ptr_eq(&prepared[0], &prepared[1]) && !prepared[0].is_nothing() && prepared[2].is_nothing());
         assert_eq!(preparations.each.len(), 2);
+    }
+
+    /// Depends on a setting.
+    #[derive(Debug)]
+    struct Sized;
+
+    static PARAMS: &[ParamSpec] = &[ParamSpec {
+        key: "size",
+        label: "Size",
+        unit: "",
+        kind: ParamKind::Integer { min: 1, max: 9, default: 1 },
+        help: "How many.",
+        affects: Affects::Prepare,
+    }];
+
+    static INFO: MethodInfo = MethodInfo {
+        id: MethodId("sized"),
+        title: "Sized",
+        summary: "",
+        params: PARAMS,
+        coverage: Coverage::NONE,
+        reads: Reads { environment: true, ..Reads::NOTHING },
+        revision: 1,
+    };
+
+    impl Method for Sized {
+        fn info(&self) -> &'static MethodInfo {
+            &INFO
+        }
+
+        fn prepare(&self, _: &World, settings: &Settings, _: &Handle) -> Result<Prepared, MethodError> {
+            let size = settings.text("size").and_then(|text| text.parse::<u32>().ok()).unwrap_or(0);
+            Ok(Prepared::nothing().with("size", vec![size]))
+        }
+
+        fn points(&self) -> Option<&dyn ShadePoint> {
+            Some(self)
+        }
+    }
+
+    impl ShadePoint for Sized {
+        fn radiance(&self, _: &SurfacePoint<'_>, _: &Prepared, _: &Settings, _: [f32; 4]) -> Vec3 {
+            Vec3::ZERO
+        }
+    }
+
+    #[test]
+    fn one_that_two_layers_come_to_share_leaves_no_orphan_at_work() {
+        let settings = |size: &str| {
+            let mut settings = Settings::new(PARAMS);
+            settings.set("size", size).unwrap();
+            settings
+        };
+        let layer = |size| Layer { method: &Sized, settings: settings(size), instances: vec![0] };
+        let (scene, ctx) = (Arc::new(gallery::open("ball").unwrap()), egui::Context::default());
+        let mut preparations = Preparations::new(Store::none());
+        let mut settle = |layers: &Layers| {
+            preparations.follow(layers, &scene, &ctx);
+            // At once: what runs now must be polled later on.
+            preparations.follow(layers, &scene, &ctx);
+            let start = std::time::Instant::now();
+            while preparations.is_busy() {
+                assert!(start.elapsed().as_secs() < 60, "an orphan is at work");
+                preparations.follow(layers, &scene, &ctx);
+                std::thread::yield_now();
+            }
+            let sizes = preparations.prepared(layers).unwrap().iter().map(|p| p.whole("size")[0]).collect::<Vec<_>>();
+            (sizes, preparations.each.len())
+        };
+        let two = Layers::of(&Sized, settings("1")).with(layer("2"));
+        assert_eq!(settle(&two), (vec![1, 2], 2));
+        assert_eq!(settle(&Layers::of(&Sized, settings("2")).with(layer("2"))), (vec![2, 2], 1));
+        assert_eq!(settle(&two), (vec![1, 2], 2));
+        assert_eq!(settle(&Layers::of(&Sized, settings("2")).with(layer("1"))), (vec![2, 1], 2), "they change places");
     }
 }

@@ -25,6 +25,7 @@ pub struct Session {
     sources: Sources,
     curves: Curves,
     resolved: Resolved,
+    layers: Layers,
     /// Where the document is saved; `None` before the first time.
     pub path: Option<PathBuf>,
     saved: Arc<Document>,
@@ -50,6 +51,7 @@ impl Session {
         let Opened { document, sources, missing, notices: _ } = opened;
         let mut curves = Curves::default();
         let resolved = resolve(&document, &sources, &mut curves);
+        let layers = document.lighting.layers(&resolved.object_keys);
         let history = History::new(document);
         let saved = history.current().clone();
         Session {
@@ -57,6 +59,7 @@ impl Session {
             sources,
             curves,
             resolved,
+            layers,
             path,
             saved,
             selection: Selection::default(),
@@ -85,8 +88,8 @@ impl Session {
     }
 
     /// What lights the scene.
-    pub fn layers(&self) -> Layers {
-        self.document().lighting.layers(&self.resolved.object_keys)
+    pub fn layers(&self) -> &Layers {
+        &self.layers
     }
 
     /// The files of the document.
@@ -213,13 +216,18 @@ impl Session {
             && before.environment == now.environment
             && before.assignments == now.assignments
             && before.objects == now.objects
+            && before.lights == now.lights
             && before.presets == now.presets
             && before.lighting.method == now.lighting.method
             && before.lighting.settings == now.lighting.settings
             // A notice tells of an unknown one.
             && before.view.tone.parse::<ToneMap>().is_err() == now.view.tone.parse::<ToneMap>().is_err();
         if same {
+            let lit_otherwise = before.lighting != now.lighting;
             self.revision += 1;
+            if lit_otherwise {
+                self.layers = self.history.current().lighting.layers(&self.resolved.object_keys);
+            }
         } else {
             self.refresh();
         }
@@ -228,6 +236,7 @@ impl Session {
     fn refresh(&mut self) {
         self.revision += 1;
         self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
+        self.layers = self.history.current().lighting.layers(&self.resolved.object_keys);
         let known = |missing: &Missing| self.unread.iter().find(|m| m.path == missing.path && m.kind == missing.kind);
         self.missing = self.resolved.missing.iter().map(|missing| known(missing).unwrap_or(missing).clone()).collect();
         let materials = self.document().materials.len();

@@ -5,6 +5,7 @@
 //! [`space::Space`]. How different two colours look says [`difference::ciede2000`].
 
 pub mod adaptation;
+pub mod blackbody;
 pub mod difference;
 pub mod gamut;
 pub mod illuminant;

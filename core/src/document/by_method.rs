@@ -1,6 +1,7 @@
 //! The choice of a lighting method, of others for some objects, and the document as a method with certain settings shows
 //! it, as a side of the comparison.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use serde_json::Map;
@@ -62,14 +63,23 @@ impl LightingEntry {
     /// What lights the objects, of which `object_keys` has the keys in the order of the scene's instances. Overrides of
     /// unknown objects, and by methods that this version cannot mix in, count as none.
     pub fn layers(&self, object_keys: &[String]) -> Layers {
-        let mut layers = Layers::of(self.live_method(), self.settings());
+        let layers = Layers::of(self.live_method(), self.settings());
+        if self.overrides.is_empty() {
+            return layers;
+        }
+        let places: HashMap<&str, usize> =
+            object_keys.iter().zip(0..).map(|(key, place)| (key.as_str(), place)).collect();
+        // Objects of one kind share a layer.
+        let mut others: Vec<(&OverrideEntry, Layer)> = Vec::new();
         for (key, entry) in &self.overrides {
-            let instance = object_keys.iter().position(|known| known == key);
-            if let (Some(instance), Some(method)) = (instance, entry.mixed_method()) {
-                layers = layers.with(Layer { method, settings: entry.settings(), instances: vec![instance] });
+            let Some(&instance) = places.get(key.as_str()) else { continue };
+            if let Some((_, layer)) = others.iter_mut().find(|(known, _)| known.is_like(entry)) {
+                layer.instances.push(instance);
+            } else if let Some(method) = entry.mixed_method() {
+                others.push((entry, Layer { method, settings: entry.settings(), instances: vec![instance] }));
             }
         }
-        layers
+        others.into_iter().fold(layers, |layers, (_, layer)| layers.with(layer))
     }
 
     /// The settings of the world that [`LightingEntry::layers`] are drawn in: those of the reference where it lights an
@@ -81,9 +91,14 @@ impl LightingEntry {
 }
 
 impl OverrideEntry {
+    /// The same light: method and settings are equal.
+    fn is_like(&self, other: &OverrideEntry) -> bool {
+        self.method == other.method && self.settings == other.settings
+    }
+
     /// The method, if it can light single objects: it draws on the processor.
     pub fn mixed_method(&self) -> Option<&'static dyn Method> {
-        mixed_methods().find(|method| method.info().id.0 == self.method)
+        lighting::find(&self.method).filter(|method| method.is_on_processor())
     }
 
     /// The settings that count for one object: not those of the whole scene.
@@ -189,6 +204,11 @@ mod tests {
         assert_eq!(lighting.world_settings(), lighting.settings());
         lighting.override_object("ball", Some(reference::ID));
         assert_eq!(lighting.world_settings(), lighting.reference_settings());
+        lighting.override_object("floor", Some(reference::ID));
+        let layers = lighting.layers(&keys);
+        let places: Vec<_> = layers.iter().map(|layer| layer.instances.clone()).collect();
+        assert_eq!(places, [vec![], vec![1, 0]], "objects that are lit alike share a layer");
+        assert_eq!(layers.overridden(), 2);
         for key in ["ball", "nobody", "floor"] {
             lighting.override_object(key, None);
         }

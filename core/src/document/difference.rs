@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Assigned, Assignment, Document, MaterialEntry, Side, Snapshot};
+use super::{Assigned, Assignment, BackgroundEntry, Document, EnvironmentEntry, MaterialEntry, Side, Snapshot};
 use crate::lighting;
 use crate::material::{Material, params};
 use crate::param::{self, ParamSpec, ParamValue};
@@ -20,12 +20,22 @@ pub enum Place {
     Assignment(String),
     /// Name and visibility of an object, by its key.
     Object(String),
+    /// A light, by its name.
+    Light(String),
     /// The HDRI.
     Map,
     /// How far the environment is turned.
     Rotation,
     /// Factor on the radiance of the environment.
     Strength,
+    /// Colour of the environment.
+    Tint,
+    /// The map by numbers.
+    Made,
+    /// What the eye sees behind everything: colour, blur, ground.
+    Background,
+    /// Whether the sun of the environment is a light.
+    SunSplit,
     /// The lighting method.
     Method,
     /// A setting of the lighting method, by its key.
@@ -113,8 +123,14 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     }
     for object in &document.objects {
         let name = object.name.as_deref().unwrap_or(&object.key);
-        let words = format!("{name}, {}", if object.hidden { "hidden" } else { "visible" });
+        let moved = if object.transform.is_some() { ", moved" } else { "" };
+        let words = format!("{name}, {}{moved}", if object.hidden { "hidden" } else { "visible" });
         all.insert(Place::Object(object.key.clone()), (serde_json::to_value(object).ok(), words));
+    }
+    for light in document.lights.iter().flatten() {
+        let state = if light.muted { ", muted" } else { "" };
+        let words = format!("{} {} {}{state}", light.shape.title(), digits(light.power), light.unit().symbol());
+        all.insert(Place::Light(light.name.clone()), (serde_json::to_value(light).ok(), words));
     }
     let environment = &document.environment;
     if let Some(source) = &environment.source {
@@ -123,6 +139,16 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     let number = |value: f64, unit: &str| (Some(Value::from(value)), format!("{}{unit}", digits(value)));
     all.insert(Place::Rotation, number(environment.rotation_deg, " deg"));
     all.insert(Place::Strength, number(environment.strength, ""));
+    let [r, g, b] = environment.tint.map(digits);
+    all.insert(Place::Tint, (serde_json::to_value(environment.tint).ok(), format!("{r} {g} {b}")));
+    if let Some(made) = &environment.made {
+        let value = serde_json::to_value(made).ok();
+        let words = value.as_ref().map(Value::to_string).unwrap_or_default();
+        all.insert(Place::Made, (value, words));
+    }
+    all.insert(Place::Background, background(environment));
+    let split = environment.sun_split;
+    all.insert(Place::SunSplit, (Some(Value::from(split)), if split { "a light" } else { "in the map" }.into()));
     let lighting = &document.lighting;
     all.insert(Place::Method, text(&lighting.method));
     for (key, value) in &lighting.settings {
@@ -143,6 +169,24 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
     all.insert(Place::Exposure, number(view.exposure_ev, " EV"));
     all.insert(Place::Tone, text(&view.tone));
     all
+}
+
+fn background(environment: &EnvironmentEntry) -> Held {
+    let EnvironmentEntry { background, background_blur_deg: blur, ground, .. } = environment;
+    let value = serde_json::to_value((background, blur, ground)).ok();
+    let mut words = match background {
+        BackgroundEntry::Environment => "environment".to_string(),
+        BackgroundEntry::Color(color) => color.map(digits).join(" "),
+        BackgroundEntry::Unknown(value) => value.to_string(),
+    };
+    if *blur > 0.0 {
+        words += &format!(", blurred {} deg", digits(*blur));
+    }
+    if let Some(ground) = ground {
+        let shadows = if ground.shadows { " with shadows" } else { "" };
+        words += &format!(", ground {} m below, {} m wide{shadows}", digits(ground.height), digits(ground.radius));
+    }
+    (value, words)
 }
 
 fn parts(document: &Document, entry: &MaterialEntry, material: Option<&Material>) -> Vec<(Part, Held)> {
@@ -192,14 +236,15 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Whole) => "is not there".into(),
         Place::Material(_, Part::Metal) => "none".into(),
         Place::Material(_, Part::Form) => "as the scene".into(),
-        Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map => "as the model".into(),
+        Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map | Place::Made => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
         Place::Override(_) => "as the scene".into(),
+        Place::Light(_) if document.lights.is_some() => "is not there".into(),
+        Place::Light(_) => "as the model".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
-        Place::Rotation | Place::Strength | Place::Method | Place::Camera | Place::Exposure | Place::Tone => {
-            String::new()
-        }
+        Place::Rotation | Place::Strength | Place::Tint | Place::Background | Place::SunSplit => String::new(),
+        Place::Method | Place::Camera | Place::Exposure | Place::Tone => String::new(),
     }
 }
 
@@ -207,7 +252,9 @@ fn group(place: &Place) -> String {
     match place {
         Place::Material(name, _) => format!("Material {name}"),
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
-        Place::Map | Place::Rotation | Place::Strength => "Environment".into(),
+        Place::Light(_) => "Lights".into(),
+        Place::Map | Place::Rotation | Place::Strength | Place::Tint => "Environment".into(),
+        Place::Made | Place::Background | Place::SunSplit => "Environment".into(),
         Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
         Place::Reference(_) => "Reference".into(),
         Place::Camera | Place::Exposure | Place::Tone => "View".into(),
@@ -224,9 +271,14 @@ fn label(place: &Place) -> String {
         Place::Material(_, Part::Texture(role)) => format!("Texture {role}"),
         Place::Assignment(object) => format!("Material of {object}"),
         Place::Object(key) => format!("Object {key}"),
+        Place::Light(name) => format!("Light {name}"),
         Place::Map => "HDRI".into(),
         Place::Rotation => "Rotation".into(),
         Place::Strength => "Strength".into(),
+        Place::Tint => "Tint".into(),
+        Place::Made => "Made map".into(),
+        Place::Background => "Background".into(),
+        Place::SunSplit => "Sun".into(),
         Place::Method => "Method".into(),
         Place::Lighting(key) => of(setting_of_any_method(key), key),
         Place::Override(object) => format!("Method of {object}"),
@@ -310,9 +362,19 @@ impl Document {
                 self.objects.retain(|entry| entry.key != *key);
                 self.objects.extend(new);
             }
+            Place::Light(name) => self.copy_light(name, from),
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,
+            Place::Tint => self.environment.tint = from.environment.tint,
+            Place::Made => self.environment.made.clone_from(&from.environment.made),
+            Place::Background => {
+                let (to, from) = (&mut self.environment, &from.environment);
+                to.background.clone_from(&from.background);
+                to.background_blur_deg = from.background_blur_deg;
+                to.ground.clone_from(&from.ground);
+            }
+            Place::SunSplit => self.environment.sun_split = from.environment.sun_split,
             Place::Method => self.lighting.choose(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
             Place::Override(key) => match from.lighting.overrides.get(key) {
@@ -323,6 +385,20 @@ impl Document {
             Place::Camera => self.view.camera = from.view.camera.clone(),
             Place::Exposure => self.view.exposure_ev = from.view.exposure_ev,
             Place::Tone => self.view.tone.clone_from(&from.view.tone),
+        }
+    }
+
+    /// Takes over a light, all of them where only one of the states has lights of its own.
+    fn copy_light(&mut self, name: &str, from: &Document) {
+        let (Some(own), Some(theirs)) = (&mut self.lights, &from.lights) else {
+            return self.lights.clone_from(&from.lights);
+        };
+        let new = theirs.iter().find(|light| light.name == name);
+        match (own.iter().position(|light| light.name == name), new) {
+            (Some(place), Some(new)) => own[place] = new.clone(),
+            (Some(place), None) => _ = own.remove(place),
+            (None, Some(new)) => own.push(new.clone()),
+            (None, None) => {}
         }
     }
 

@@ -153,11 +153,8 @@ impl State<'_> {
     /// See [`Document::check`]; `place` is what its fields follow.
     fn check(&self, place: &str) -> Result<(), String> {
         let State { materials, presets, environment, view } = self;
-        let numbers = [
-            ("environment.rotation_deg", environment.rotation_deg, -1e6..=1e6),
-            ("environment.strength", environment.strength, 0.0..=1e6),
-            ("view.exposure_ev", view.exposure_ev, -64.0..=64.0),
-        ];
+        environment.check(place)?;
+        let numbers = [("view.exposure_ev", view.exposure_ev, -64.0..=64.0)];
         for (field, value, range) in numbers {
             if !range.contains(&value) {
                 let (start, end) = (range.start(), range.end());

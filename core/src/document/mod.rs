@@ -8,13 +8,19 @@ mod by_method;
 mod camera;
 mod difference;
 mod edit;
+mod environment;
 mod format;
 mod history;
 mod keys;
+mod light;
+mod lighting_preset;
+mod lights;
+mod maps;
 mod open;
 mod paths;
 mod resolve;
 mod snapshot;
+mod transform;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,15 +38,20 @@ use crate::surface::fresnel::Form;
 pub use by_method::mixed_methods;
 pub use difference::{Difference, Part, Place, differences};
 pub use edit::Assigned;
+pub use environment::{BackgroundEntry, EnvironmentEntry, GroundEntry, MadeEntry, SkyEntry, SoftBoxEntry, StudioEntry};
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
+pub use light::{LightEntry, Shape};
+pub use lighting_preset::{LightingPreset, PresetError};
+pub use lights::{entries_of, shining};
 pub use open::{
     Missing, MissingKind, Opened, Sources, is_document, load_image, load_map, load_model, open, placeholder, reload,
 };
 pub use paths::{absolute, relative};
 pub use resolve::{Curves, Resolved, resolve};
 pub use snapshot::{CompareEntry, Side, SideEntry, Snapshot};
+pub use transform::{TransformEntry, center_of};
 
 /// Scene of a new document.
 pub const DEFAULT_SCENE: &str = "gallery:workbench";
@@ -59,7 +70,7 @@ pub struct Document {
     /// Objects that do not have the material of the model.
     #[serde(default)]
     pub assignments: Vec<Assignment>,
-    /// Objects that were renamed or hidden.
+    /// Objects that were renamed, hidden or moved.
     #[serde(default)]
     pub objects: Vec<ObjectEntry>,
     /// Metals in use that do not come with the program.
@@ -68,6 +79,9 @@ pub struct Document {
     /// Light from infinitely far away.
     #[serde(default)]
     pub environment: EnvironmentEntry,
+    /// Lights other than the environment; those of the model when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lights: Option<Vec<LightEntry>>,
     /// Saved points of view.
     #[serde(default)]
     pub cameras: Vec<CameraEntry>,
@@ -158,23 +172,9 @@ pub struct ObjectEntry {
     /// Not drawn.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub hidden: bool,
-    /// Fields that this version does not know.
-    #[serde(flatten)]
-    pub other: Map<String, Value>,
-}
-
-/// The environment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EnvironmentEntry {
-    /// Path of the HDRI; that of the scene, else the built-in studio, when absent.
+    /// Where it was put instead of its place in the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// Degrees counter-clockwise about +y.
-    #[serde(default)]
-    pub rotation_deg: f64,
-    /// Factor on the radiance.
-    #[serde(default = "one")]
-    pub strength: f64,
+    pub transform: Option<TransformEntry>,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -284,12 +284,6 @@ fn one() -> f64 {
 
 fn default_tone() -> String {
     crate::color::tone::ToneMap::default().id().into()
-}
-
-impl Default for EnvironmentEntry {
-    fn default() -> Self {
-        EnvironmentEntry { source: None, rotation_deg: 0.0, strength: 1.0, other: Map::new() }
-    }
 }
 
 impl Default for LightingEntry {

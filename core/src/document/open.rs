@@ -155,6 +155,7 @@ impl Document {
             objects: Vec::new(),
             presets: Vec::new(),
             environment: Default::default(),
+            lights: None,
             cameras: Vec::new(),
             lighting: Default::default(),
             view: Default::default(),

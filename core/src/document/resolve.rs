@@ -4,9 +4,10 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
+use super::maps::Maps;
 use super::{
-    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, material_keys, object_keys, placeholder,
-    role_key,
+    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, center_of, material_keys, object_keys,
+    placeholder, role_key, shining,
 };
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
@@ -30,6 +31,8 @@ pub struct Curves {
     made: Vec<(Preset, Form, Arc<Fresnel>)>,
     /// Fits of metals that do not bring theirs, in the same order.
     fitted: Vec<(Preset, Arc<Fits>)>,
+    /// Environments.
+    maps: Maps,
 }
 
 impl Curves {
@@ -143,6 +146,9 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
     let object_keys = object_keys(&model);
     place_objects(&mut scene, &object_keys, &model_keys, document, &mut materials);
     scene.materials = materials;
+    if let Some(lights) = &document.lights {
+        scene.lights = shining(lights, &object_keys);
+    }
     if !document.subject.is_empty() {
         let chosen = |key: &String| document.subject.contains(key);
         scene.subject = (0..object_keys.len()).filter(|i| chosen(&object_keys[*i])).collect();
@@ -155,10 +161,9 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         }
         found
     });
+    let map = map.or_else(|| curves.maps.made(&document.environment, &mut notices));
     let map = map.or_else(|| scene.environment.clone()).unwrap_or_else(|| STUDIO.clone());
-    let turned = map.rotation + document.environment.rotation_deg.to_radians() as f32;
-    let strength = map.strength * document.environment.strength as f32;
-    scene.environment = Some(Arc::new(Environment { rotation: turned, strength, ..Environment::clone(&map) }));
+    curves.maps.place(&mut scene, &map, &document.environment, &mut notices);
     Resolved { scene: Arc::new(scene), object_keys, base, missing, notices }
 }
 
@@ -273,7 +278,8 @@ fn place_objects(
         .filter_map(|a| Some((a.object.as_str(), *by_name.get(a.material.as_str())?)))
         .collect();
     let objects: BTreeMap<&str, _> = document.objects.iter().map(|entry| (entry.key.as_str(), entry)).collect();
-    for (instance, key) in scene.instances.iter_mut().zip(keys) {
+    let Scene { instances, meshes, .. } = scene;
+    for (instance, key) in instances.iter_mut().zip(keys) {
         let own = of_model.get(instance.material).copied().flatten();
         let material = assigned.get(key.as_str()).copied().or(own);
         instance.material = material.unwrap_or_else(|| {
@@ -283,6 +289,10 @@ fn place_objects(
         });
         if let Some(entry) = objects.get(key.as_str()) {
             instance.visible = !entry.hidden;
+            if let Some(transform) = &entry.transform {
+                let center = center_of(instance, &meshes[instance.mesh]);
+                instance.world_from_local = transform.place(instance.world_from_local, center);
+            }
             if let Some(name) = &entry.name {
                 instance.name = name.clone();
             }

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{
-    Assignment, Document, EnvironmentEntry, LightingEntry, MaterialEntry, ObjectEntry, TextureChoice, ViewEntry,
-    edit::free,
+    Assignment, Document, EnvironmentEntry, LightEntry, LightingEntry, MaterialEntry, ObjectEntry, TextureChoice,
+    ViewEntry, edit::free,
 };
 use crate::lighting::classical;
 use crate::material::preset::Preset;
@@ -33,6 +33,9 @@ pub struct Snapshot {
     /// Metals in use that do not come with the program.
     #[serde(default, with = "super::shared", skip_serializing_if = "Vec::is_empty")]
     pub presets: Vec<Arc<Preset>>,
+    /// Lights other than the environment; those of the model when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lights: Option<Vec<LightEntry>>,
     /// Light from infinitely far away.
     #[serde(default)]
     pub environment: EnvironmentEntry,
@@ -162,6 +165,7 @@ impl Document {
             assignments: self.assignments.clone(),
             objects: self.objects.clone(),
             presets: self.presets.clone(),
+            lights: self.lights.clone(),
             environment: self.environment.clone(),
             lighting: self.lighting.clone(),
             view: self.view.clone(),
@@ -171,10 +175,20 @@ impl Document {
 
     /// Goes back to a state. The point of view goes back too; snapshots and saved cameras stay.
     pub fn restore(&mut self, state: &Snapshot) {
-        let Snapshot { name: _, materials, assignments, objects, presets, environment, lighting, view, other: _ } =
-            state.clone();
+        let Snapshot {
+            name: _,
+            materials,
+            assignments,
+            objects,
+            presets,
+            lights,
+            environment,
+            lighting,
+            view,
+            other: _,
+        } = state.clone();
         (self.materials, self.assignments, self.objects, self.presets) = (materials, assignments, objects, presets);
-        (self.environment, self.lighting, self.view) = (environment, lighting, view);
+        (self.lights, self.environment, self.lighting, self.view) = (lights, environment, lighting, view);
     }
 
     /// What a side is about, with its own point of view.

@@ -6,6 +6,7 @@
 mod atomic;
 mod container;
 mod exr;
+mod hdr;
 mod picture;
 mod png;
 #[cfg(test)]
@@ -14,6 +15,7 @@ pub(crate) mod testing;
 pub use atomic::{read_bounded, write_atomic};
 pub use container::{Array, Container, Element, Kind};
 pub use exr::{Attribute, Channel, Samples, write_exr_with};
+pub use hdr::write_environment;
 pub use picture::{Encoding, MAX_PIXELS, PictureFormat, read_picture, write_exr, write_picture, write_png};
 
 use std::path::{Path, PathBuf};

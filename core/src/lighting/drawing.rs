@@ -16,7 +16,7 @@ pub struct Drawing<'a> {
     world: &'a World,
     lit: Vec<Lit<'a>>,
     /// Which of them lights an instance; the first lights those beyond the list.
-    of_instance: Vec<u16>,
+    of_instance: Vec<u32>,
 }
 
 /// A method with what it looks up.
@@ -67,7 +67,7 @@ impl<'a> Drawing<'a> {
         for (number, layer) in layers.iter().enumerate().skip(1) {
             for &instance in &layer.instances {
                 if let Some(place) = of_instance.get_mut(instance) {
-                    *place = number as u16;
+                    *place = number as u32;
                 }
             }
         }
@@ -79,9 +79,9 @@ impl<'a> Drawing<'a> {
         let mut eye = Eye::new(self.world, view, pixel, index);
         let [for_method, for_lamps, for_sky, for_surface] = std::array::from_fn(|_| eye.random());
         let Some(point) = eye.point() else { return eye.miss() };
-        let lit = self.lit[usize::from(self.of_instance.get(point.instance() as usize).copied().unwrap_or(0))];
+        let lit = self.lit[self.of_instance.get(point.instance() as usize).map_or(0, |place| *place as usize)];
         let Some(points) = lit.points else { return self.world.sample(view, pixel, index) };
-        let mut radiance = points.radiance(&point, lit.prepared, lit.settings, for_method);
+        let mut radiance = points.radiance(&point, lit.prepared, lit.settings, for_method) + eye.lamps_seen();
         if lit.adds_emission {
             radiance += point.emission();
         }

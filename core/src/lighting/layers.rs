@@ -71,6 +71,11 @@ impl Layers {
         std::iter::once(&self.first).chain(&self.others)
     }
 
+    /// How many instances others than the first light.
+    pub fn overridden(&self) -> usize {
+        self.others.iter().map(|layer| layer.instances.len()).sum()
+    }
+
     /// One method lights the whole scene.
     pub fn is_single(&self) -> bool {
         self.others.is_empty()

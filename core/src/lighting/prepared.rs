@@ -12,7 +12,7 @@ use crate::job::Handle;
 use crate::param::{Affects, Settings};
 use crate::reference::World;
 use crate::scene::Scene;
-use crate::scene::fingerprint::Fingerprint;
+use crate::scene::fingerprint::{self, Digest};
 
 /// The kind of file.
 pub const KIND: Kind = Kind { id: "prepared", version: 1 };
@@ -29,23 +29,27 @@ pub struct Reads {
     pub materials: bool,
     /// Punctual lights.
     pub lights: bool,
-    /// The environment.
+    /// The environment as it lights the scene.
     pub environment: bool,
+    /// The map of the environment, however it is turned and scaled.
+    pub sky: bool,
 }
 
 impl Reads {
     /// Nothing: there is no preparation, or the same one for every scene.
-    pub const NOTHING: Reads = Reads { geometry: false, materials: false, lights: false, environment: false };
+    pub const NOTHING: Reads =
+        Reads { geometry: false, materials: false, lights: false, environment: false, sky: false };
     /// The whole scene.
-    pub const ALL: Reads = Reads { geometry: true, materials: true, lights: true, environment: true };
+    pub const ALL: Reads = Reads { geometry: true, materials: true, lights: true, environment: true, sky: true };
 
     /// Each part with its name for people.
-    pub fn parts(self) -> [(&'static str, bool); 4] {
+    pub fn parts(self) -> [(&'static str, bool); 5] {
         [
             ("geometry", self.geometry),
             ("materials", self.materials),
             ("lights", self.lights),
             ("environment", self.environment),
+            ("map of the environment", self.sky),
         ]
     }
 }
@@ -130,14 +134,11 @@ impl Asked {
 pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
     let MethodInfo { reads, revision, .. } = method.info();
     let Asked { method: id, settings } = Asked::by(method, settings);
-    let parts = match *reads {
-        Reads::NOTHING => Vec::new(),
-        reads => {
-            let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(scene);
-            let digests = [geometry, materials, lights, environment];
-            let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
-            read.map(|((name, _), digest)| (name, digest.to_string())).collect()
-        }
+    let parts: Vec<_> = {
+        use fingerprint::{environment, geometry, lights, materials, sky};
+        let digests: [fn(&Scene) -> Digest; 5] = [geometry, materials, lights, environment, sky];
+        let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
+        read.map(|((name, _), digest)| (name, digest(scene).to_string())).collect()
     };
     let inputs = json!({ "method": id.0, "revision": revision, "settings": settings, "scene": parts });
     blake3::hash(inputs.to_string().as_bytes()).to_hex().to_string()

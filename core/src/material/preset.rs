@@ -9,7 +9,7 @@ mod library;
 mod text;
 
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION, reaches_required};
-pub(super) use check::{ID_REMEDY, is_id};
+pub(crate) use check::{ID_REMEDY, is_id};
 pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
 pub(super) use library::hint;
 pub use library::{IDS, find, library};

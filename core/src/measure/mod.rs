@@ -8,6 +8,7 @@ pub mod error_map;
 mod errors;
 mod flip;
 mod times;
+pub mod view;
 
 pub use errors::{Errors, Mask, errors, interior, relative_square};
 pub use flip::{FlipError, PIXELS_PER_DEGREE, flip};
@@ -16,7 +17,11 @@ pub use times::evaluation_times;
 use glam::Vec3;
 
 use crate::color::rgb::luminance;
+use crate::leaf::Leaf;
 use crate::picture::Picture;
+
+/// The WGSL twins of what is here.
+pub const LEAVES: &[&Leaf] = &[&view::LEAF];
 
 /// Keeps relMSE finite where the reference is dark; radiance squared.
 pub const RELMSE_EPSILON: f64 = 0.01;

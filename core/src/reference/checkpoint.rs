@@ -36,6 +36,9 @@ pub struct Key {
     materials: String,
     lights: String,
     environment: String,
+    /// Only where the eye sees something else than the environment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    background: Option<String>,
     camera: String,
     width: u32,
     height: u32,
@@ -74,7 +77,7 @@ impl Key {
 
     /// That of a tracing. Hashes the scene, see [`Fingerprint::new`].
     pub fn new(world: &World, view: &View) -> Key {
-        let Fingerprint { geometry, materials, lights, environment } = Fingerprint::new(world.scene());
+        let Fingerprint { geometry, materials, lights, environment, background } = Fingerprint::new(world.scene());
         let View { camera, size, seed } = view;
         let Options { bounces, clamp, masking, multiple_scattering, contribution } = *world.options();
         Key {
@@ -83,6 +86,7 @@ impl Key {
             materials: materials.to_string(),
             lights: lights.to_string(),
             environment: environment.to_string(),
+            background: background.map(|digest| digest.to_string()),
             camera: fingerprint::camera(camera).to_string(),
             width: size.x,
             height: size.y,
@@ -108,6 +112,8 @@ impl Key {
         hash("the materials", &self.materials, &file.materials);
         hash("the lights", &self.lights, &file.lights);
         hash("the environment", &self.environment, &file.environment);
+        let seen = |key: &Key| key.background.clone().unwrap_or_default();
+        hash("the background", &seen(self), &seen(file));
         hash("the camera", &self.camera, &file.camera);
         let mut word = |what: &str, here: String, there: String| {
             if here != there {

@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
+use super::backdrop;
 use super::bsdf::Bsdf;
 use super::lamps::{self, Receiver};
 use super::lights::{Kind, Lights, Rates};
@@ -69,10 +70,11 @@ impl<'a> Eye<'a> {
         met.filter(|met| met.light.camera && met.is_open(distance)).map(|met| met.radiance).sum()
     }
 
-    /// The sky along the ray, and lamps before it.
+    /// The background along the ray, and lamps before it.
     pub fn miss(&self) -> PathSample {
-        let radiance = self.world.lights().sky(self.ray.direction) + self.lamps_seen();
-        PathSample { radiance, clamped: Vec3::ZERO, first: None, rays: 1 }
+        let seen = backdrop::look(self.world, &self.ray, &mut self.sampler.clone());
+        let radiance = seen.radiance - seen.shadow + self.lamps_seen();
+        PathSample { radiance, clamped: Vec3::ZERO, first: None, rays: 1 + seen.rays }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::emitters::Emitters;
 use super::lamps::{self, Receiver};
@@ -218,6 +218,17 @@ impl Lights {
         let direction = (sample.point - position).normalize();
         let end = End::Surface { point: sample.point, rounding: sample.rounding, normal: sample.normal };
         Some(LightSample { direction, end, weight: sample.radiance / pdf, pdf, source: Source::Emission })
+    }
+
+    /// Irradiance of the sky on a plane that faces up, shadows left aside.
+    pub(super) fn sky_up(&self) -> Vec3 {
+        self.sky.as_ref().map_or(Vec3::ZERO, Sky::up)
+    }
+
+    /// A direction toward the sky with its radiance and density; `None` where the sky is not sampled.
+    pub(super) fn sample_sky(&self, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
+        let sample = self.sky.as_ref()?.sample(u)?;
+        Some((sample.direction, sample.radiance, sample.pdf))
     }
 
     /// Radiance of the sky, and the density with which it is sampled, before the rate.

@@ -3,6 +3,7 @@
 //! A [`World`] is a scene made ready; [`World::sample`] follows one path through one pixel and is a pure function of
 //! seed, pixel and number of the sample, so that any number of threads gives the same picture.
 
+mod backdrop;
 mod bsdf;
 pub mod checkpoint;
 mod emitters;

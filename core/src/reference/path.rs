@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::backdrop;
 use super::bsdf::Bsdf;
 use super::lamps::Receiver;
 use super::lights::{End, Kind, LightSample, Lights, Rates, Source, end_before};
@@ -82,7 +83,10 @@ impl Path<'_> {
             let hit = world.closest(&ray, sight, salt);
             self.meet_lamps(&drawn, &ray, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
             let Some(hit) = hit else {
-                self.escape(&drawn, ray.direction);
+                match self.surfaces {
+                    0 => self.background(&ray),
+                    _ => self.escape(&drawn, ray.direction),
+                }
                 return first;
             };
             let to_viewer = -ray.direction;
@@ -124,6 +128,17 @@ impl Path<'_> {
             drawn = Drawn { receiver: Some(receiver), pdf: sample.pdf, rates };
             let origin = offset(point.position, point.rounding, point.geometric, sample.wi);
             ray = Ray { origin, direction: sample.wi, t_max: f32::INFINITY };
+        }
+    }
+
+    /// Adds what the eye sees behind everything.
+    fn background(&mut self, ray: &Ray) {
+        let seen = backdrop::look(self.world, ray, &mut self.sampler);
+        self.rays += seen.rays;
+        self.add(self.waves.of_rgb(seen.radiance), Source::Environment);
+        if seen.shadow != Vec3::ZERO {
+            // Whatever the lights that are blocked: it is their absence from the picture of the ground.
+            self.add(-self.waves.of_rgb(seen.shadow), Source::Environment);
         }
     }
 

@@ -143,7 +143,8 @@ impl Cone {
     fn of_sphere(toward: Vec3, radius: f32) -> Cone {
         let sin2 = radius * radius / toward.length_squared();
         // Also for a point in the middle, where the quotient is none.
-        if !(sin2 < 1.0) && radius > 0.0 {
+        let is_outside = sin2 < 1.0;
+        if !is_outside && radius > 0.0 {
             let is_inside = toward.length_squared() < radius * radius;
             return Cone { height: if is_inside { 2.0 } else { 1.0 } };
         }

@@ -45,6 +45,8 @@ struct Tables {
     edges: Vec<f64>,
     /// Mean radiance over the sphere, without strength.
     mean: Vec3,
+    /// Irradiance on a plane that faces up, without strength.
+    up: Vec3,
 }
 
 impl Sky {
@@ -74,7 +76,12 @@ impl Sky {
 
     /// Mean radiance over the sphere, strength included.
     pub fn mean(&self) -> Vec3 {
-        self.map.strength * self.tables.mean
+        self.map.scale() * self.tables.mean
+    }
+
+    /// Irradiance on a plane that faces up and sees all of it, strength included.
+    pub fn up(&self) -> Vec3 {
+        self.map.scale() * self.tables.up
     }
 
     /// Radiance from a world direction, strength included.
@@ -160,6 +167,7 @@ impl Tables {
             columns: Vec::with_capacity((h + 1) * (w + 1)),
             edges: (0..=h + 1).map(|j| edge(j, h)).collect(),
             mean,
+            up: Environment { strength: 1.0, tint: Vec3::ONE, ..map.clone() }.irradiance_up(),
         };
         tables.weights.resize(w * h, 0.0);
         let mut total = 0.0;

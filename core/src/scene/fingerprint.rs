@@ -9,7 +9,9 @@ use blake3::{Hash, Hasher};
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
-use super::{Camera, Environment, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels};
+use super::{
+    Background, Camera, Environment, Ground, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels,
+};
 use crate::material::{AlphaMode, Material, Reflectance, Sampler, TextureRef};
 
 /// Hashes of the parts of a scene, so that it can be told which of two differ.
@@ -23,6 +25,8 @@ pub struct Fingerprint {
     pub lights: Digest,
     /// The environment.
     pub environment: Digest,
+    /// What only the eye sees of it; `None` where it sees the environment as it is.
+    pub background: Option<Digest>,
 }
 
 /// 256 bits, written as hexadecimal digits.
@@ -44,21 +48,58 @@ impl fmt::Debug for Digest {
 impl Fingerprint {
     /// That of a scene. Takes about a second per gigabyte of meshes, images and environment, on one core.
     pub fn new(scene: &Scene) -> Fingerprint {
-        let Scene { name: _, meshes, instances, materials, images, lights, cameras: _, environment, subject: _ } =
-            scene;
+        // Taken apart, so that a new field cannot be forgotten.
+        let Scene {
+            name: _,
+            meshes: _,
+            instances: _,
+            materials: _,
+            images: _,
+            lights: _,
+            cameras: _,
+            environment: _,
+            background,
+            subject: _,
+        } = scene;
         Fingerprint {
-            geometry: digest(|h| {
-                h.parts(meshes, |h, mesh| h.mesh(mesh));
-                h.list(instances, Sponge::instance);
-            }),
-            materials: digest(|h| {
-                h.list(materials, Sponge::material);
-                h.parts(images, |h, image| h.image(image));
-            }),
-            lights: digest(|h| h.list(lights, Sponge::light)),
-            environment: digest(|h| h.option(environment.as_deref(), Sponge::environment)),
+            geometry: geometry(scene),
+            materials: materials(scene),
+            lights: lights(scene),
+            environment: environment(scene),
+            background: (!background.is_plain()).then(|| digest(|h| h.background(background))),
         }
     }
+}
+
+/// The hash of meshes and instances.
+pub fn geometry(scene: &Scene) -> Digest {
+    digest(|h| {
+        h.parts(&scene.meshes, |h, mesh| h.mesh(mesh));
+        h.list(&scene.instances, Sponge::instance);
+    })
+}
+
+/// The hash of materials and images.
+pub fn materials(scene: &Scene) -> Digest {
+    digest(|h| {
+        h.list(&scene.materials, Sponge::material);
+        h.parts(&scene.images, |h, image| h.image(image));
+    })
+}
+
+/// The hash of the lights.
+pub fn lights(scene: &Scene) -> Digest {
+    digest(|h| h.list(&scene.lights, Sponge::light))
+}
+
+/// The hash of the environment.
+pub fn environment(scene: &Scene) -> Digest {
+    digest(|h| h.option(scene.environment.as_deref(), Sponge::environment))
+}
+
+/// The hash of the map of the environment, however it is turned and scaled.
+pub fn sky(scene: &Scene) -> Digest {
+    digest(|h| h.option(scene.environment.as_deref(), Sponge::map))
 }
 
 /// The hash of a point of view; its name is left out.
@@ -208,11 +249,32 @@ impl Sponge {
     }
 
     fn environment(&mut self, environment: &Environment) {
-        let Environment { name: _, width, height, texels, rotation, strength } = environment;
+        self.map(environment);
+        let Environment { rotation, strength, tint, .. } = environment;
+        self.floats(&[*rotation, *strength]);
+        // Hashes of maps without a tint are those of the time before there were tints.
+        if *tint != Vec3::ONE {
+            self.color(*tint);
+        }
+    }
+
+    /// All but how it is turned, scaled and tinted.
+    fn map(&mut self, environment: &Environment) {
+        let Environment { name: _, width, height, texels, rotation: _, strength: _, tint: _ } = environment;
         self.word(*width);
         self.word(*height);
         self.vectors(texels);
-        self.floats(&[*rotation, *strength]);
+    }
+
+    fn background(&mut self, background: &Background) {
+        let Background { map, ground } = background;
+        self.option(map.as_deref(), Sponge::environment);
+        self.option(ground.as_ref(), |h, ground| {
+            let Ground { middle, height, radius, shadows } = ground;
+            h.color(*middle);
+            h.floats(&[*height, *radius]);
+            h.flag(*shadows);
+        });
     }
 
     fn material(&mut self, material: &Material) {

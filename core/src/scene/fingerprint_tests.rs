@@ -41,6 +41,7 @@ fn scene() -> Scene {
         lights: vec![light],
         cameras: vec![],
         environment: Some(Arc::new(Environment::new("sky", 2, 1, vec![Vec3::ONE; 2]))),
+        background: Background::default(),
         subject: vec![0],
     }
 }
@@ -132,7 +133,23 @@ fn changes() -> Vec<Change> {
     sky(|e| std::mem::swap(&mut e.width, &mut e.height));
     sky(|e| e.rotation = 0.5);
     sky(|e| e.strength = 0.5);
+    sky(|e| e.tint = Vec3::X);
     list.push(("environment", Box::new(|s| s.environment = None)));
+    list.push(("background", Box::new(|s| s.background = Background::of_color(Vec3::ZERO))));
+    list.push(("background", Box::new(|s| s.background = Background::of_color(Vec3::X))));
+    let mut ground = |f: fn(&mut Ground)| {
+        let change = move |s: &mut Scene| {
+            let mut ground = Ground { middle: Vec3::ZERO, height: 1.0, radius: 9.0, shadows: false };
+            f(&mut ground);
+            s.background.ground = Some(ground);
+        };
+        list.push(("background", Box::new(change)));
+    };
+    ground(|_| ());
+    ground(|g| g.middle.x = 1.0);
+    ground(|g| g.height = 2.0);
+    ground(|g| g.radius = 8.0);
+    ground(|g| g.shadows = true);
     list
 }
 
@@ -143,6 +160,7 @@ fn differing(a: &Fingerprint, b: &Fingerprint) -> Vec<&'static str> {
         ("materials", a.materials == b.materials),
         ("lights", a.lights == b.lights),
         ("environment", a.environment == b.environment),
+        ("background", a.background == b.background),
     ];
     pairs.into_iter().filter(|(_, same)| !same).map(|(name, _)| name).collect()
 }
@@ -208,6 +226,17 @@ fn names_and_cameras_do_not_count_and_copies_are_equal() {
     renamed.environment = Some(Arc::new(Environment::new("x", 2, 1, vec![Vec3::ONE; 2])));
     renamed.cameras = vec![Camera::look_at("x", Vec3::ONE, Vec3::ZERO, 0.5)];
     assert_eq!(Fingerprint::new(&renamed), Fingerprint::new(&scene()));
+}
+
+#[test]
+fn the_map_counts_without_its_turn_and_scale() {
+    let mut turned = scene();
+    let map = Arc::make_mut(turned.environment.as_mut().unwrap());
+    (map.rotation, map.strength) = (map.rotation + 1.0, 2.0 * map.strength);
+    assert_eq!(sky(&turned), sky(&scene()));
+    assert_ne!(environment(&turned), environment(&scene()));
+    Arc::make_mut(turned.environment.as_mut().unwrap()).texels = vec![Vec3::splat(7.0); 2].into();
+    assert_ne!(sky(&turned), sky(&scene()));
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! A scene as every renderer sees it: flat, validated, in metres, radians and linear Rec.709.
 
 mod camera;
-pub(crate) mod environment;
+pub mod environment;
 pub mod fingerprint;
 pub mod gallery;
 mod light;
+pub mod photometry;
 mod pick;
 mod validate;
 
@@ -14,6 +15,7 @@ use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 use crate::material::Material;
 
+pub use environment::{Background, Ground};
 pub use light::{Light, LightKind};
 pub use pick::{Picked, Ray};
 pub use validate::Fault;
@@ -39,6 +41,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Light from infinitely far away; `None` lets the caller choose.
     pub environment: Option<Arc<Environment>>,
+    /// What the eye sees behind everything; the environment by default.
+    pub background: Background,
     /// Indices of the instances that a picture is about, on which errors are reported; all when empty.
     pub subject: Vec<usize>,
 }
@@ -150,6 +154,8 @@ pub struct Environment {
     pub rotation: f32,
     /// Factor on the radiance.
     pub strength: f32,
+    /// Linear Rec.709 factor on the radiance, white (1, 1, 1) for none; finite and not negative.
+    pub tint: Vec3,
 }
 
 /// An axis-aligned box, empty when `min > max`.

@@ -20,6 +20,8 @@ pub struct Picked {
     pub instance: usize,
     /// World position in metres.
     pub position: Vec3,
+    /// Normal between those of the corners, world, unit, on the side of the ray; normal maps are not looked up.
+    pub normal: Vec3,
 }
 
 impl Camera {
@@ -45,34 +47,64 @@ impl Scene {
     /// The nearest point that a ray meets on a visible instance, from the sides that are drawn. Opacity is not looked
     /// up: holes of masked materials and clear panes count as surface.
     pub fn pick(&self, ray: Ray) -> Option<Picked> {
-        let mut nearest: Option<(f32, usize)> = None;
+        let mut nearest: Option<(Met, usize)> = None;
         for (index, instance) in self.instances.iter().enumerate().filter(|(_, i)| i.visible) {
-            let limit = nearest.map_or(f32::INFINITY, |(t, _)| t);
+            let limit = nearest.map_or(f32::INFINITY, |(met, _)| met.t);
             let (Some(mesh), Some(material)) = (self.meshes.get(instance.mesh), self.materials.get(instance.material))
             else {
                 continue;
             };
-            if let Some(t) = meet(mesh, instance, material.double_sided, ray, limit) {
-                nearest = Some((t, index));
+            if let Some(met) = meet(mesh, instance, material.double_sided, ray, limit) {
+                nearest = Some((met, index));
             }
         }
-        nearest.map(|(t, instance)| Picked { instance, position: ray.origin + t * ray.direction })
+        nearest.map(|(met, instance)| {
+            let position = ray.origin + met.t * ray.direction;
+            Picked { instance, position, normal: self.normal_at(instance, met, ray.direction) }
+        })
     }
 }
 
-/// Distance along the ray to the nearest triangle before `limit`, in units of the ray's direction.
-fn meet(mesh: &Mesh, instance: &Instance, double_sided: bool, ray: Ray, limit: f32) -> Option<f32> {
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy)]
+struct Met {
+    /// In units of the ray's direction.
+    t: f32,
+    /// Shares of the second and third corner.
+    at: Vec2,
+    triangle: usize,
+}
+
+impl Scene {
+    /// The unit normal of an instance where a ray met it, on the ray's side.
+    fn normal_at(&self, instance: usize, met: Met, direction: Vec3) -> Vec3 {
+        let of = || {
+            let instance = self.instances.get(instance)?;
+            let mesh = self.meshes.get(instance.mesh)?;
+            let corners = mesh.indices.get(3 * met.triangle..3 * met.triangle + 3)?;
+            let normal = |corner: usize| mesh.normals.get(corners[corner] as usize).copied();
+            let (a, b, c) = (normal(0)?, normal(1)?, normal(2)?);
+            let local = (1.0 - met.at.x - met.at.y) * a + met.at.x * b + met.at.y * c;
+            (instance.world_from_local.matrix3.inverse().transpose() * local).try_normalize()
+        };
+        let normal = of().unwrap_or(-direction);
+        if normal.dot(direction) > 0.0 { -normal } else { normal }
+    }
+}
+
+/// The nearest triangle on the ray before `limit`.
+fn meet(mesh: &Mesh, instance: &Instance, double_sided: bool, ray: Ray, limit: f32) -> Option<Met> {
     // An affine map keeps ratios along a line: the distance is the same in both spaces.
     let local_from_world = instance.world_from_local.inverse();
     let origin = local_from_world.transform_point3(ray.origin);
     let direction = local_from_world.transform_vector3(ray.direction);
-    let mut nearest = None;
+    let mut nearest: Option<Met> = None;
     let (triangles, _) = mesh.indices.as_chunks::<3>();
-    for corners in triangles {
+    for (triangle, corners) in triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|i| mesh.positions.get(i as usize).copied().unwrap_or(Vec3::NAN));
         let hit = meet_triangle(origin, direction, [a, b, c], double_sided);
-        if let Some(t) = hit.filter(|t| *t < nearest.unwrap_or(limit)) {
-            nearest = Some(t);
+        if let Some((t, at)) = hit.filter(|(t, _)| *t < nearest.map_or(limit, |met| met.t)) {
+            nearest = Some(Met { t, at, triangle });
         }
     }
     nearest
@@ -80,7 +112,7 @@ fn meet(mesh: &Mesh, instance: &Instance, double_sided: bool, ray: Ray, limit: f
 
 /// Moeller and Trumbore 1997, Fast, minimum storage ray-triangle intersection. In local space the front stays the
 /// counter-clockwise side, also of a mirrored instance.
-fn meet_triangle(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3], double_sided: bool) -> Option<f32> {
+fn meet_triangle(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3], double_sided: bool) -> Option<(f32, Vec2)> {
     let (ab, ac) = (b - a, c - a);
     let p = direction.cross(ac);
     let determinant = ab.dot(p);
@@ -93,7 +125,7 @@ fn meet_triangle(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3], double_sid
     let q = from_a.cross(ab);
     let v = direction.dot(q) / determinant;
     let t = ac.dot(q) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some(t)
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0).then_some((t, Vec2::new(u, v)))
 }
 
 #[cfg(test)]
@@ -134,6 +166,8 @@ mod tests {
         let picked = scene.pick(ray).expect("a ball is in the middle");
         assert_eq!(picked.instance, 0);
         assert!((picked.position - Vec3::new(0.0, 0.0, 0.5)).length() < 2e-3, "{picked:?}");
+        let beside = scene.pick(camera().ray(Vec2::new(0.55, 0.4), 1.0)).expect("it is still on the ball");
+        assert!(beside.normal.angle_between(beside.position) < 2e-3, "{beside:?}");
         scene.instances[0].visible = false;
         let picked = scene.pick(ray).expect("another is behind");
         assert_eq!(picked.instance, 1);

@@ -49,6 +49,11 @@ impl Scene {
         if let Some(environment) = &self.environment {
             check_environment(environment, &mut faults.at("environment".into()));
         }
+        if let Some(map) = &self.background.map {
+            check_environment(map, &mut faults.at("background".into()));
+        }
+        let ground = self.background.ground.is_none_or(|ground| ground.is_sound());
+        faults.at("background".into()).unless(ground, "height or radius of the ground is not positive");
         if faults.0.is_empty() { Ok(()) } else { Err(faults.0) }
     }
 }
@@ -169,6 +174,8 @@ fn check_environment(environment: &Environment, at: &mut At<'_>) {
     let sound = environment.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0);
     at.unless(sound, "a texel is negative or not finite");
     at.unless(environment.rotation.is_finite() && environment.strength >= 0.0, "rotation or strength is out of range");
+    let tint = environment.tint;
+    at.unless(tint.is_finite() && tint.min_element() >= 0.0, "the tint is negative or not finite");
 }
 
 #[cfg(test)]

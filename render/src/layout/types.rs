@@ -51,6 +51,7 @@ macro_rules! shared {
 /// Every shared struct.
 pub const STRUCTS: &[Struct] = &[
     ViewData::LAYOUT,
+    BackgroundData::LAYOUT,
     DisplayData::LAYOUT,
     SourceData::LAYOUT,
     EnvironmentStep::LAYOUT,
@@ -139,10 +140,10 @@ shared! {
         clip_from_world: Mat4,
         world_from_clip: Mat4,
         viewer: Vec4,
+        environment_scale: Vec3,
+        environment_mips: f32,
         environment_cos: f32,
         environment_sin: f32,
-        environment_scale: f32,
-        environment_mips: f32,
         size: Vec2,
         light_count: u32,
         samples: u32,
@@ -154,6 +155,22 @@ shared! {
         wide_alpha: f32,
         contribution: u32,
         unlit_words: u32,
+        pad0: u32,
+        pad1: u32,
+    }
+}
+
+shared! {
+    /// What the eye sees behind everything.
+    pub struct BackgroundData {
+        scale: Vec3,
+        mapped: u32,
+        center: Vec3,
+        height: f32,
+        cos: f32,
+        sin: f32,
+        radius: f32,
+        pad0: u32,
     }
 }
 
@@ -162,8 +179,8 @@ shared! {
     pub struct DisplayData {
         factor: f32,
         tone: u32,
+        mode: u32,
         pad0: u32,
-        pad1: u32,
     }
 }
 

@@ -43,11 +43,11 @@ struct ViewData {
     world_from_clip: mat4x4f,
     // Homogeneous viewer: w = 1 a point, w = 0 the direction towards an orthographic viewer.
     viewer: vec4f,
-    // Rotation of the environment: cosine and sine; factor from texel to radiance; number of levels of the radiance cube.
+    // Factor from a texel of the environment to radiance; number of levels of the radiance cube; rotation: cosine and sine.
+    environment_scale: vec3f,
+    environment_mips: f32,
     environment_cos: f32,
     environment_sin: f32,
-    environment_scale: f32,
-    environment_mips: f32,
     size: vec2f,
     light_count: u32,
     samples: u32,
@@ -63,6 +63,26 @@ struct ViewData {
     contribution: u32,
     // Words of a light in the list of the instances that it leaves out; 0 when all light everything.
     unlit_words: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+// What the eye sees behind everything.
+struct BackgroundData {
+    // Factor from a texel of its map to radiance.
+    scale: vec3f,
+    // 1 where it has a map of its own.
+    mapped: u32,
+    // Of the dome, in the world.
+    center: vec3f,
+    // Of the centre above the ground.
+    height: f32,
+    // Rotation of the map.
+    cos: f32,
+    sin: f32,
+    // Of the dome, 0 for none.
+    radius: f32,
+    pad0: u32,
 }
 
 // How a picture is shown.
@@ -71,8 +91,9 @@ struct DisplayData {
     factor: f32,
     // One of the TONE_ constants.
     tone: u32,
+    // One of the DISPLAY_ constants.
+    mode: u32,
     pad0: u32,
-    pad1: u32,
 }
 
 // A small bright source of the environment, in its own frame.

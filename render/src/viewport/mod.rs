@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::measure::view::DisplayMode;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::reference::Contribution;
@@ -18,8 +19,9 @@ use glam::{Affine3A, UVec2, Vec2, Vec3, Vec4};
 use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::frame::{Encoding, Jitter, Targets};
+use crate::pass::display::{self, Display};
 use crate::pass::environment::{Progress, Refinement};
-use crate::pass::{display, target};
+use crate::pass::target;
 use crate::passes::Passes;
 use crate::readback::{Reading, read_texel};
 use crate::renderer::check_size;
@@ -42,6 +44,8 @@ pub struct Frame {
     pub tone: ToneMap,
     /// Exposure in stops.
     pub exposure_ev: f32,
+    /// The picture, or what judges its exposure.
+    pub mode: DisplayMode,
     /// Something is being dragged: quick frames only.
     pub moving: bool,
 }
@@ -107,7 +111,7 @@ pub struct Viewport {
     /// The finer cubes of the resident's environment, and the share that is done.
     preparing: Option<(Refinement, f32)>,
     last: Option<(Key, Camera)>,
-    display: Option<(ToneMap, f32)>,
+    display: Option<Display>,
 }
 
 impl Viewport {
@@ -198,7 +202,7 @@ impl Viewport {
         if !gpu.is_software() {
             self.prepare(&passes)?;
         }
-        let display = (frame.tone, frame.exposure_ev);
+        let display = Display { tone: frame.tone, exposure_ev: frame.exposure_ev, mode: frame.mode };
         if changed || before != (self.shown, self.frames()) || self.display != Some(display) {
             self.show(&passes, display);
             self.display = Some(display);
@@ -321,7 +325,7 @@ impl Viewport {
     }
 
     /// Puts the picture through the display transform.
-    fn show(&self, passes: &Passes, display: (ToneMap, f32)) {
+    fn show(&self, passes: &Passes, display: Display) {
         let Some(canvas) = self.canvas() else { return };
         let mut encoder = passes.gpu.device.create_command_encoder(&Default::default());
         let (sum, frames) = match (self.shown, &self.full) {

@@ -59,7 +59,7 @@ impl Method for Ambient {
         let Some(ParamValue::Integer(rows)) = settings.get("rows") else { unreachable!("declared") };
         let count = ((rows as u32).min(map.height) * map.width) as usize;
         let sum: Vec3 = map.texels[..count].iter().sum();
-        let mean = map.strength * sum / count as f32;
+        let mean = map.scale() * sum / count as f32;
         Ok(Prepared::nothing().with("mean", mean.to_array().to_vec()))
     }
 

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use burnish_core::color::tone::{ToneMap, exposure_factor, tone_map};
+use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::picture::Picture;
+use burnish_render::pass::display::Display;
 use burnish_render::readback::read_texture;
 use burnish_render::{Gpu, Passes, Plate, RenderError};
 use burnish_tests::{Need, trial};
@@ -46,6 +48,13 @@ fn shown() {
     {
         plate.draw(picture, display.0, display.1).unwrap_or_else(|e| panic!("{e}"));
         assert_shows(&gpu, &plate, picture, display);
+    }
+    for mode in DisplayMode::ALL {
+        let display = Display { tone: ToneMap::None, exposure_ev: 1.0, mode };
+        plate.draw_as(&second, display).unwrap_or_else(|e| panic!("{e}"));
+        let displayed = displayed(&second, mode, ToneMap::None, 1.0);
+        // Light of the screen, as another picture.
+        assert_shows(&gpu, &plate, &displayed, (ToneMap::None, 0.0));
     }
     let empty = plate.draw(&Arc::new(Picture::default()), ToneMap::Neutral, 0.0);
     assert!(matches!(empty, Err(RenderError::Size { .. })), "{empty:?}");

@@ -39,6 +39,11 @@ fn same(name: &str, samples: &str) {
 /// Means and texels of a scene under an uneven sky; `samples` is the setting.
 pub fn same_scene(mut scene: Scene, samples: &str) {
     scene.environment = Some(Arc::new(sky()));
+    assert_same(scene, samples);
+}
+
+/// A scene lit by `classical` with so many samples is the same on both.
+pub fn assert_same(scene: Scene, samples: &str) {
     let mut settings = Settings::new(classical::PARAMS);
     settings.set("samples", samples).expect("a setting");
     let scene = Arc::new(scene);
@@ -53,7 +58,7 @@ pub fn same_scene(mut scene: Scene, samples: &str) {
 }
 
 /// Small, uneven, with a lamp of two texels, turned.
-fn sky() -> Environment {
+pub fn sky() -> Environment {
     let texel = |i: u32| match (i % 128, i / 128) {
         (40..42, 20) => Vec3::splat(300.0),
         (x, y) => Vec3::new(1.0 + (x as f32 / 20.0).sin(), 1.0, y as f32 / 32.0),

@@ -94,7 +94,7 @@ impl Bench {
 fn frame(scene: &Scene) -> Frame {
     let settings = Settings::new(PARAMS);
     let camera = scene.cameras[0].clone();
-    Frame { size: SIZE, camera, settings, tone: TONE, exposure_ev: EXPOSURE, moving: false }
+    Frame { size: SIZE, camera, settings, tone: TONE, exposure_ev: EXPOSURE, mode: Default::default(), moving: false }
 }
 
 fn reference(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Picture {

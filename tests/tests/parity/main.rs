@@ -12,6 +12,7 @@ mod dielectric;
 mod fresnel;
 mod ggx;
 mod grid;
+mod ground;
 mod harness;
 mod lambert;
 mod layered;
@@ -19,6 +20,7 @@ mod math;
 mod micro_normal;
 mod surface;
 mod tone;
+mod view;
 
 use std::collections::BTreeSet;
 
@@ -42,6 +44,8 @@ fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     cases.extend(math::cases());
     cases.extend(tone::cases());
+    cases.extend(view::cases());
+    cases.extend(ground::cases());
     cases.extend(fresnel::cases());
     cases.extend(ggx::cases());
     cases.extend(lambert::cases());

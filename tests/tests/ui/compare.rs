@@ -232,11 +232,14 @@ fn by_processor() {
     bench.until("B is drawn and compared with A", |w| w.compare().maps.shown().is_some());
     let mean = |bench: &Bench| compare(bench).maps.shown().map(|(map, _)| map.mean);
     assert!(mean(&bench).is_some_and(|mean| mean > 0.1), "{:?}", mean(&bench));
+    let shown = |bench: &mut Bench| bench.workbench().reference().shown().is_some();
+    assert!(!shown(&mut bench), "the picture of a side is not offered to be saved as the live one");
     bench.keys(Modifiers::NONE, Key::D);
     // Both follow paths, each with points of its own: what is left is noise and the form of the metals.
     bench.keys(Modifiers::NONE, Key::E);
     bench.until("the picture is compared with the reference", |w| w.compare().maps.shown().is_some());
     bench.until("it refines", |w| w.compare().maps.shown().is_some_and(|(map, _)| map.mean < 0.1));
+    assert!(!shown(&mut bench), "nor is the reference");
     bench.keys(Modifiers::NONE, Key::E);
     bench.until("the threads rest", |w| !w.reference().is_tracing());
 }

@@ -197,6 +197,10 @@ fn lit_otherwise() {
         "classical; no lamps; environment: approximate; indirect diffuse: nothing; indirect glossy: nothing; \
          1 object lit otherwise, drawn on the processor",
     );
+    bench.workbench().ask(Request::Command(Command::SaveImage));
+    bench.until_shown("As shown");
+    bench.until_shown("Rendered anew");
+    bench.keys(Modifiers::NONE, Key::Escape);
     bench.click_role(Role::ComboBox, &format!("Method of {name}"));
     bench.click_role(Role::Button, "Classical");
     assert_eq!(method(&bench).as_deref(), Some("classical"));

@@ -90,6 +90,8 @@ pub fn render_lights_objects_otherwise() {
     // The only object is traced: in the form of the live method, which keeps 1 % of the measured curve.
     let at = |picture: &burnish_core::picture::Picture| picture.texels[32 * 96 + 48].truncate();
     assert!((at(&mixed) / at(&paths) - 1.0).abs().max_element() < 0.02, "{} is not {}", at(&mixed), at(&paths));
+    let (_, separable) = draw("separable.exr", &["--set", "masking=separable"]);
+    assert_ne!(separable.texels, mixed.texels, "what is about the surface is that of the command line");
     let (said, again) = draw("again.exr", &["--method", "classical", "--processor"]);
     assert!(!said.contains("object"), "a method on the command line lights all: {said}");
     assert_eq!(again.texels, plain.texels);

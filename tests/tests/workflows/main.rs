@@ -3,6 +3,7 @@
 mod chart;
 mod comparing;
 mod documents;
+mod environment;
 mod exporting;
 mod fitting;
 mod forms;
@@ -37,6 +38,8 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("a file that cannot be read is named in one line with exit code 3", &[], unreadable_files),
         trial("info describes the workbench in words and in JSON", &[], info_describes_the_workbench),
         trial("info reads a model file", &[], info_reads_a_model),
+        trial("environment makes skies and studios and takes suns out of maps", &[], environment::made_and_split),
+        trial("environment refuses what is no number or no studio", &[], environment::refused),
         trial("presets lists every file of the folder", &[], presets_lists_every_file),
         trial("presets gives colours in other spaces", &[], forms::the_list_gives_colours_in_other_spaces),
         trial("the table of forms has a row for each metal", &[], forms::the_table_has_a_row_for_each_metal_and_form),

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use burnish_core::document::Document;
+use burnish_core::document::{Document, LightingEntry, SHARED_SETTINGS};
 use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::classical::form_choice;
 use burnish_core::lighting::{Layers, MethodError, MethodId, Store};
+use burnish_core::param::Settings;
 use burnish_core::reference::{Film, Options, Pass, View, World};
 use glam::UVec2;
 
@@ -39,7 +40,7 @@ pub fn run(
     let layers = with_settings(layers, opened.document.as_ref(), set)?;
     let settings = &layers.first().settings;
     let mixed = opened.document.as_ref().filter(|_| !layers.is_single());
-    let world = mixed.map_or_else(|| settings.clone(), |document| document.lighting.world_settings());
+    let world = mixed.map_or_else(|| settings.clone(), |document| world_settings(&document.lighting, settings));
     let options = Options::new(&world);
     let staged = stage.set(opened, form_choice(settings), Forms::OfMaterials)?;
     let Staged { scene, camera, size, notices, document, .. } = staged;
@@ -72,7 +73,7 @@ pub fn run(
     let (tone, exposure_ev) = output.look(document.as_ref().map(|document| &document.view));
     write_picture(&film.picture(), &output.out, tone, exposure_ev).map_err(Failure::resources)?;
     let (UVec2 { x, y }, secs) = (size, start.elapsed().as_secs_f32());
-    let others = match layers.iter().count() - 1 {
+    let others = match layers.overridden() {
         0 => String::new(),
         1 => ", 1 object by another method".into(),
         count => format!(", {count} objects by other methods"),
@@ -88,6 +89,19 @@ fn with_settings(layers: Layers, document: Option<&Document>, set: &[(String, St
     let mut settings = stored.map_or_else(|| layers.first().settings.clone(), |document| document.lighting.settings());
     assign(&mut settings, set)?;
     Ok(layers.iter().skip(1).cloned().fold(Layers::of(method, settings), Layers::with))
+}
+
+/// The settings of the world that a document's layers are drawn in. What is about the surface is that of the scene's
+/// method, perhaps from `--set`.
+fn world_settings(lighting: &LightingEntry, of_method: &Settings) -> Settings {
+    let mut world = lighting.world_settings();
+    for key in SHARED_SETTINGS {
+        if let Some(value) = of_method.get(key) {
+            // Both declare it.
+            let _ = world.set_value(key, value);
+        }
+    }
+    world
 }
 
 fn method_failure(id: MethodId, error: &MethodError) -> Failure {

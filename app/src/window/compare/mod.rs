@@ -62,6 +62,8 @@ pub struct Compare {
     pub preparations: [Preparations; 2],
     /// Their methods draw on the processor.
     on_processor: [bool; 2],
+    /// Until they are prepared classical light stands in.
+    stands_in: [bool; 2],
     /// Draws B on the processor where A is drawn there too.
     second: Reference,
     /// Maps and the pictures that they are made of.
@@ -76,8 +78,10 @@ impl Compare {
     /// Nothing is compared; preparations are kept in a store.
     pub fn new(store: Store) -> Compare {
         Compare {
-            preparations: [Preparations::new(store.clone()), Preparations::new(store)],
+            // A side has no badge that says stale.
+            preparations: [store.clone(), store].map(|store| Preparations::new(store).always_anew()),
             on_processor: [false; 2],
+            stands_in: [false; 2],
             view: None,
             last: CompareView::Wipe,
             wipe: 0.5,
@@ -119,6 +123,22 @@ impl Compare {
     /// The processor draws a side, path by path or point by point.
     pub fn is_traced(&self, session: &Session, side: Side) -> bool {
         session.document().compare.side(side).is_reference() || self.on_processor[side as usize]
+    }
+
+    /// Notes whether classical light stands in for a side that is traced.
+    pub fn stand_in(&mut self, side: Side, stands_in: bool) {
+        self.stands_in[side as usize] = stands_in;
+    }
+
+    /// The picture of a side is one that its tracer made.
+    pub fn is_refined(&self, session: &Session, side: Side) -> bool {
+        self.is_traced(session, side) && !self.stands_in[side as usize]
+    }
+
+    /// Another document is compared: nothing of the last one is shown.
+    pub fn forget(&mut self) {
+        self.preparations.iter_mut().for_each(Preparations::forget);
+        self.maps.forget();
     }
 
     /// B has the second tracer where A is drawn on the processor as well.

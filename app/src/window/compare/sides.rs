@@ -43,7 +43,7 @@ impl Sides {
         let now = session.document();
         let Some(snapshot) = now.snapshot_of(side) else {
             let missing = session.resolved().missing.len();
-            let (document, scene, layers) = (now.clone(), session.scene().clone(), session.layers());
+            let (document, scene, layers) = (now.clone(), session.scene().clone(), session.layers().clone());
             return SideScene { document, scene, layers, missing };
         };
         let kept = &mut self.kept[side as usize];

@@ -33,17 +33,20 @@ pub struct ImageSettings {
     frames: u32,
     /// Size of the viewport.
     natural: UVec2,
-    /// Size of the reference where the viewport shows it.
+    /// Size of what the processor refines where the viewport shows it.
     traced: Option<UVec2>,
+    /// That is the reference, not the live picture.
+    is_reference: bool,
     /// It is what is written.
     as_shown: bool,
 }
 
 impl ImageSettings {
-    /// A picture of the viewport's size, or the reference where it is shown.
-    pub fn new(viewport: Option<UVec2>, traced: Option<UVec2>) -> ImageSettings {
+    /// A picture of the viewport's size, or what the processor refines where it is shown: the reference, or the live
+    /// picture.
+    pub fn new(viewport: Option<UVec2>, traced: Option<UVec2>, is_reference: bool) -> ImageSettings {
         let natural = viewport.filter(|size| size.min_element() > 0).unwrap_or(DEFAULT_SIZE);
-        ImageSettings { size: natural, frames: 16, natural, traced, as_shown: traced.is_some() }
+        ImageSettings { size: natural, frames: 16, natural, traced, is_reference, as_shown: traced.is_some() }
     }
 
     /// Shows the settings.
@@ -51,12 +54,17 @@ impl ImageSettings {
         if let Some(size) = self.traced {
             ui.horizontal(|ui| {
                 let hover = "The picture that the processor refines, with the samples that it has now.";
-                ui.radio_value(&mut self.as_shown, true, "Reference, as shown").on_hover_text(hover);
+                let [shown, anew] = match self.is_reference {
+                    true => ["Reference, as shown", "Live picture"],
+                    false => ["As shown", "Rendered anew"],
+                };
+                ui.radio_value(&mut self.as_shown, true, shown).on_hover_text(hover);
                 let hover = "Rendered anew by the lighting method, in any size.";
-                ui.radio_value(&mut self.as_shown, false, "Live picture").on_hover_text(hover);
+                ui.radio_value(&mut self.as_shown, false, anew).on_hover_text(hover);
             });
             if self.as_shown {
-                ui.weak(format!("{} x {} pixels. In any size: burnish render --method reference.", size.x, size.y));
+                let command = if self.is_reference { "burnish render --method reference" } else { "burnish render" };
+                ui.weak(format!("{} x {} pixels. In any size: {command}.", size.x, size.y));
             } else {
                 self.live_ui(ui);
             }
@@ -100,7 +108,7 @@ impl ImageSettings {
 /// Work that ends with what to tell.
 type Writing = Job<Result<String, String>>;
 
-/// Starts to write the picture that was asked for. Refuses where there is no whole reference.
+/// Starts to write the picture that was asked for. Refuses where there is no whole one.
 pub fn start(
     session: &Session,
     (passes, look, store): (Option<&Arc<Passes>>, Option<&Look>, Store),
@@ -112,8 +120,7 @@ pub fn start(
         return Ok(render(session, (passes, store), settings, path, ctx));
     }
     let look = look.filter(|look| look.whole_size().is_some());
-    let picture =
-        look.ok_or("the reference has no whole picture yet; wait for its first sample, then save")?.picture.clone();
+    let picture = look.ok_or("there is no whole picture yet; wait for its first sample, then save")?.picture.clone();
     let view = &session.document().view;
     let (tone, exposure_ev) = (view.tone.parse().unwrap_or_default(), view.exposure_ev as f32);
     let waker = ctx.clone();
@@ -138,7 +145,7 @@ fn render(
         jitter_frames: settings.frames,
     };
     let (tone, exposure_ev) = (document.view.tone.parse().unwrap_or_default(), document.view.exposure_ev as f32);
-    let (passes, waker, layers) = (passes.cloned(), ctx.clone(), session.layers());
+    let (passes, waker, layers) = (passes.cloned(), ctx.clone(), session.layers().clone());
     let on_processor = (!drawn_on_device(&layers)).then(|| Options::new(&document.lighting.world_settings()));
     let label = format!("Rendering {}", name_of(&path.to_string_lossy()));
     let progress = ctx.clone();

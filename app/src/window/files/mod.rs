@@ -241,7 +241,7 @@ impl Files {
             Command::SaveImage => {
                 let size = stage.status().map(|status| status.size);
                 let traced = reference.shown().and_then(Look::whole_size);
-                self.open_dialog(Ask::SaveImage(ImageSettings::new(size, traced)), session);
+                self.open_dialog(Ask::SaveImage(ImageSettings::new(size, traced, reference.is_on())), session);
             }
             Command::Notices => self.shows_notices = true,
             Command::Quit => self.leave(Next::Quit, session, ctx),

@@ -7,6 +7,7 @@ mod history;
 mod material;
 mod presets;
 mod reflectance;
+mod row;
 mod scene_tree;
 mod start;
 mod status;
@@ -36,7 +37,7 @@ pub use reflectance::ReflectancePanel;
 pub use scene_tree::SceneTree;
 pub use start::StartPage;
 pub use status::StatusLine;
-pub use viewport::ViewportPanel;
+pub use viewport::{Tool, ViewportPanel};
 
 /// What every panel may use.
 pub struct Context<'a> {

@@ -2,6 +2,7 @@
 //!
 //! Only the rows that are seen are laid out, so that thousands of objects cost no more than a screenful.
 
+mod placement;
 mod rows;
 
 use burnish_core::document::CameraEntry;
@@ -79,6 +80,9 @@ impl SceneTree {
             let field = egui::TextEdit::singleline(&mut self.query).hint_text("Search");
             let field = ui.add(field.desired_width(f32::INFINITY));
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SearchInput, true, "Search the scene"));
+        }
+        if context.session.selection.objects.len() == 1 {
+            egui::Panel::bottom("placement").show(ui, |ui| placement::ui(ui, context.session));
         }
         let rows = rows::list(context.session, &self.query, &self.closed);
         let mut actions = Vec::new();

@@ -120,7 +120,7 @@ fn filled_in(session: &Session) -> String {
         (_, Cover::None) => format!("{term}: {filled_by}"),
         _ => format!("{term}: {}", cover.word()),
     });
-    let others = match session.layers().iter().count() - 1 {
+    let others = match session.layers().overridden() {
         0 => String::new(),
         1 => "; 1 object lit otherwise, drawn on the processor".into(),
         count => format!("; {count} objects lit otherwise, drawn on the processor"),

@@ -275,8 +275,16 @@ impl Reference {
 
     /// Why there is no picture, in words.
     pub fn fault(&self) -> Option<String> {
-        let fault = self.fault.as_ref().filter(|_| self.on)?;
-        Some(format!("The reference cannot be traced: {fault}. The live picture is shown; an edit tries again."))
+        let fault = self.fault.as_ref()?;
+        match (self.on, self.draws_live) {
+            (true, _) => Some(format!(
+                "The reference cannot be traced: {fault}. The live picture is shown; an edit tries again."
+            )),
+            (_, true) => {
+                Some(format!("The processor cannot draw: {fault}. Classical light is shown; an edit tries again."))
+            }
+            _ => None,
+        }
     }
 
     /// Seconds until tracing goes on after input.

@@ -56,6 +56,11 @@ pub(super) fn far_above(max: f64, default: f64) -> bool {
     default > 0.0 && max >= FAR_ABOVE_DEFAULT * default
 }
 
+/// Change of a component for each point of a drag: a part of its range, or of the number where the range is wide.
+fn vector_speed(range: f64, value: f64) -> f64 {
+    if range > 100.0 { 0.01 * value.abs().max(0.5) } else { 0.004 * range }
+}
+
 /// The coordinates of a vector side by side.
 pub(super) fn vector_ui(
     ui: &mut egui::Ui,
@@ -73,7 +78,7 @@ pub(super) fn vector_ui(
             let field = DragValue::new(&mut new[axis])
                 .range(min[axis]..=max[axis])
                 .clamp_existing_to_range(false)
-                .speed(0.004 * (max[axis] - min[axis]))
+                .speed(vector_speed(max[axis] - min[axis], vector[axis]))
                 .max_decimals(3);
             let field = ui.add_sized(size, field).on_hover_text(format!("{letter}. {hover}"));
             ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(format!("{} {letter}", spec.label)));

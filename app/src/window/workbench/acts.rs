@@ -64,6 +64,7 @@ impl Workbench {
             Command::Orthographic => Some(self.session.document().view.camera.orthographic),
             Command::Reference => Some(self.reference.is_on() && self.compare.view().is_none()),
             Command::Compare(view) => Some(self.compare.view() == Some(view)),
+            Command::Tool(tool) => Some(self.panels.viewport.tools.tool == tool),
             Command::ThemeSystem => Some(self.preferences.dark.is_none()),
             Command::ThemeLight => Some(self.preferences.dark == Some(false)),
             Command::ThemeDark => Some(self.preferences.dark == Some(true)),
@@ -109,6 +110,7 @@ impl Workbench {
                 self.show_panel(Pane::Scene);
                 self.panels.scene.rename(&self.session);
             }
+            Command::Tool(tool) => self.panels.viewport.tools.tool = tool,
             Command::Reference => {
                 self.reference.switch(!self.reference.is_on());
                 self.compare.show(None);

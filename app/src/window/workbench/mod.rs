@@ -144,6 +144,13 @@ impl Workbench {
     pub fn set_session(&mut self, session: Session) {
         self.session = session;
         self.start = None;
+        self.forget_light();
+    }
+
+    /// What was prepared for another document lights none after it.
+    fn forget_light(&mut self) {
+        self.preparations.forget();
+        self.compare.forget();
     }
 
     /// The user's choices.
@@ -235,7 +242,7 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
-        preparations.follow(&session.layers(), session.scene(), ui.ctx());
+        preparations.follow(session.layers(), session.scene(), ui.ctx());
         let rests = reference.shown().is_some()
             || stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);
         if let Some(fault) = thumbnails.frame(ui.ctx(), stage.passes(), rests) {
@@ -271,6 +278,7 @@ impl Workbench {
         tables.ui(ui.ctx(), &mut context);
         if files.take_opened() {
             self.start = None;
+            self.forget_light();
             ui.ctx().request_repaint();
         }
         self.above_ui(ui.ctx());
@@ -325,4 +333,27 @@ fn is_used(input: &egui::InputState) -> bool {
         _ => true,
     };
     input.events.iter().any(counts)
+}
+
+#[cfg(test)]
+mod tests {
+    use burnish_core::reference;
+
+    use super::*;
+
+    #[test]
+    fn what_was_prepared_for_a_document_is_forgotten_with_it() {
+        let ctx = egui::Context::default();
+        let mut opened = document::open("gallery:ball").unwrap();
+        let key = document::object_keys(&opened.sources.models[&opened.document.scene])[0].clone();
+        opened.document.lighting.override_object(&key, Some(reference::ID));
+        let options = Options { data_folder: None, ..Options::default() };
+        let mut workbench = Workbench::new(&ctx, options, Stage::Flat);
+        workbench.set_session(Session::new(opened, None));
+        let Workbench { preparations, session, .. } = &mut workbench;
+        preparations.follow(session.layers(), session.scene(), &ctx);
+        assert!(preparations.iter_mut().count() > 0);
+        workbench.set_session(Session::new(document::open("gallery:ball").unwrap(), None));
+        assert_eq!(workbench.preparations.iter_mut().count(), 0);
+    }
 }

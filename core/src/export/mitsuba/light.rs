@@ -121,7 +121,8 @@ fn facing(direction: Vec3) -> Mat3 {
 /// linear between centres is met everywhere.
 pub fn environment(map: &Environment, folder: &mut Folder<'_>) -> Result<Element, FileError> {
     let (width, texels) = refined(map);
-    let channel = |i: usize| texels.iter().map(|texel| texel[i]).collect();
+    // Mitsuba has one factor for all channels.
+    let channel = |i: usize| texels.iter().map(|texel| map.tint[i] * texel[i]).collect();
     let channels = vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2))];
     let height = texels.len() as u32 / width.max(1);
     let file = "textures/environment.exr";

@@ -71,6 +71,10 @@ pub fn export(scene: &Scene, view: &View<'_>, options: &Options<'_>, folder: &Pa
         materials.push(written);
     }
     tell_of_backs(scene, &mut folder.report);
+    if !scene.background.is_plain() {
+        let what = "the environment itself is seen, infinitely far away";
+        folder.report.note("background", Loss::Dropped, what);
+    }
 
     let transparent = materials.iter().flatten().any(|m| m.transparent);
     root = root.with(sensor::integrator(view, transparent)).with(sensor::sensor(view, scene.bounds()));

@@ -82,6 +82,7 @@ fn finish(raw: Raw, file_name: &str, report: &mut Report) -> Environment {
         texels: texels.into(),
         rotation: 0.0,
         strength: 1.0,
+        tint: Vec3::ONE,
     }
 }
 

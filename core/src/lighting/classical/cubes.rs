@@ -69,7 +69,7 @@ pub fn cube_scale(environment: &Environment) -> f32 {
 /// Makes the cubes of a map; its rotation and strength are left to lookups.
 pub fn prepare(map: &Environment, job: &Handle) -> Result<Prepared, MethodError> {
     // In its own frame.
-    let map = &Environment { rotation: 0.0, strength: 1.0, ..map.clone() };
+    let map = &Environment { rotation: 0.0, strength: 1.0, tint: Vec3::ONE, ..map.clone() };
     let (sizes, scale) = (CubeSizes::full(map.width), cube_scale(map));
     let block = shading_block(map.width);
     let Split { dimmed, sources } = split(map, block, SHADING_SOURCES);
@@ -171,7 +171,7 @@ pub struct PreparedMaps<'a> {
     sources: &'a [f32],
     wide_alpha: f32,
     /// From a texel to radiance.
-    scale: f32,
+    scale: Vec3,
     turn: Turn,
 }
 
@@ -188,7 +188,7 @@ impl<'a> PreparedMaps<'a> {
             irradiance: CubeMap::new(IRRADIANCE_FACE, 1, prepared.halves("irradiance")),
             sources: prepared.floats("sources"),
             wide_alpha: wide_alpha(width, shading_block(width)),
-            scale: scale * environment.strength,
+            scale: scale * environment.scale(),
             turn: Turn::by(environment.rotation),
         })
     }

@@ -51,7 +51,7 @@ static INFO: MethodInfo = MethodInfo {
         emission: Cover::Exact,
     },
     // For pictures on the processor; the device makes cubes of its own.
-    reads: Reads { environment: true, ..Reads::NOTHING },
+    reads: Reads { sky: true, ..Reads::NOTHING },
     revision: 1,
 };
 
@@ -129,7 +129,7 @@ pub const PARAMS: &[ParamSpec] = &[
         kind: ParamKind::Choice { options: &FormChoice::IDS, default: 0 },
         help: "Form in which metal presets are rendered; it is resolved into the materials before the scene is drawn. \
                cheapest: the cheapest form of each metal within the two tolerances; spectral: the truth.",
-        affects: Affects::Prepare,
+        affects: Affects::Materials,
     },
     ParamSpec {
         key: "fresnel-error",
@@ -137,7 +137,7 @@ pub const PARAMS: &[ParamSpec] = &[
         unit: "%",
         kind: ParamKind::Number { min: 0.0, max: 100.0, default: 1.0 },
         help: "Largest relative error over red, green, blue and angle that the cheapest form of a metal may have.",
-        affects: Affects::Prepare,
+        affects: Affects::Materials,
     },
     ParamSpec {
         key: "fresnel-delta-e",
@@ -145,7 +145,7 @@ pub const PARAMS: &[ParamSpec] = &[
         unit: "CIEDE2000",
         kind: ParamKind::Number { min: 0.0, max: 100.0, default: 1.0 },
         help: "Largest colour difference on a ball that the cheapest form of a metal may have; 1 is about to be seen.",
-        affects: Affects::Prepare,
+        affects: Affects::Materials,
     },
 ];
 

@@ -1,10 +1,13 @@
 //! Facts of the classical method.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use super::*;
+use crate::lighting::prepared::key;
 use crate::math::frame::Frame;
-use crate::scene::Environment;
+use crate::scene::{Environment, gallery};
 use crate::surface::blinn_phong::{self, Variant};
 use crate::surface::ggx::albedo::schlick_ratio;
 use crate::surface::layered::{Lobe, Surface};
@@ -261,4 +264,21 @@ fn a_power_of_the_cosine_returns_its_albedo_from_a_white_environment() {
             }
         }
     }
+}
+
+#[test]
+fn what_is_prepared_depends_on_the_map_alone() {
+    let mut scene = gallery::open("ball").unwrap();
+    scene.environment = Some(Arc::new(tilted()));
+    let settings = Settings::new(PARAMS);
+    let before = key(&Classical, &settings, &scene);
+    let mut other = settings.clone();
+    other.set("fresnel", "spectral").unwrap();
+    scene.materials[0].roughness = 0.9;
+    let map = Environment { rotation: 1.0, strength: 3.0, ..tilted() };
+    scene.environment = Some(Arc::new(map.clone()));
+    assert_eq!(key(&Classical, &other, &scene), before);
+    let texels = map.texels.iter().map(|texel| 2.0 * texel).collect();
+    scene.environment = Some(Arc::new(Environment { texels, ..map }));
+    assert_ne!(key(&Classical, &settings, &scene), before);
 }

@@ -22,10 +22,10 @@ pub fn reaches_required(first: f64, last: f64) -> bool {
 }
 
 /// What a text must be to pass [`is_id`].
-pub(in crate::material) const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
+pub(crate) const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
 
 /// True for what may name a file of `presets`.
-pub(in crate::material) fn is_id(id: &str) -> bool {
+pub(crate) fn is_id(id: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
     !id.is_empty() && id.len() <= MAX_ID && !id.starts_with('.') && id.chars().all(allowed)
 }

@@ -128,7 +128,7 @@ fn spheres_give_the_irradiance_of_their_form_factors() {
         Light { position, intensity: Vec3::splat(2.0), kind, ..Light::default() }
     };
     for (h, cos) in [(1.5, 0.9), (4.0, 0.3), (200.0, 0.7)] {
-        let toward = Vec3::new((1.0 - cos * cos as f32).sqrt(), cos, 0.0) * (0.2 * h);
+        let toward = Vec3::new((1.0_f32 - cos * cos).sqrt(), cos, 0.0) * (0.2 * h);
         let want = 2.0 * PI * f64::from(cos) / f64::from(h * h);
         assert_irradiance(&format!("sphere at {h} radii"), sphere(toward, 0.2), want);
     }

@@ -7,12 +7,10 @@
 
 use std::sync::LazyLock;
 
-use glam::{Vec2, Vec3};
-use rayon::prelude::*;
-
 use super::{ALPHA_MIN, Masking, clamp_alpha, reflection};
 use crate::math::bounded;
 use crate::math::quadrature::GaussLegendre;
+use glam::{Vec2, Vec3};
 
 /// Nodes over the cosine.
 pub const ALBEDO_MU: u32 = 24;
@@ -66,19 +64,7 @@ impl AlbedoTable {
 
     /// Roots of the loss and Schlick ratios.
     fn fill_directions(&mut self) {
-        let entries: Vec<([f64; 2], [f64; 2])> = (0..ALBEDO_LOSS_MEAN)
-            .into_par_iter()
-            .map(|entry| {
-                let (column, row) = (entry % ALBEDO_MU, entry / ALBEDO_MU);
-                let (along, across) = (node_alpha(row % ALBEDO_ALPHA), node_alpha(row / ALBEDO_ALPHA));
-                let x2 = (f64::from(column) / f64::from(ALBEDO_MU - 1)).powi(2);
-                // Inverse of x^2 = mu (1 + a) / (mu + a).
-                let a = (0.5 * (along * along + across * across)).sqrt();
-                let loss = reflection::loss(a * x2 / (1.0 + a - x2), along, across);
-                (loss, reflection::schlick_ratio(x2, along, across))
-            })
-            .collect();
-        for (entry, (loss, ratio)) in entries.iter().enumerate() {
+        for (entry, (loss, ratio)) in on_threads(ALBEDO_LOSS_MEAN, direction_entry).iter().enumerate() {
             for m in 0..2 {
                 let first = m * ALBEDO_STRIDE as usize + entry;
                 self.flat[first] = loss[m].max(0.0).sqrt() as f32;
@@ -155,6 +141,42 @@ impl AlbedoTable {
         let entry = (first + x.index) as usize;
         x.mix(self.flat[entry], self.flat[entry + 1])
     }
+}
+
+/// Losses and Schlick ratios of both maskings.
+type Entry = ([f64; 2], [f64; 2]);
+
+fn direction_entry(entry: u32) -> Entry {
+    let (column, row) = (entry % ALBEDO_MU, entry / ALBEDO_MU);
+    let (along, across) = (node_alpha(row % ALBEDO_ALPHA), node_alpha(row / ALBEDO_ALPHA));
+    let x2 = (f64::from(column) / f64::from(ALBEDO_MU - 1)).powi(2);
+    // Inverse of x^2 = mu (1 + a) / (mu + a).
+    let a = (0.5 * (along * along + across * across)).sqrt();
+    let loss = reflection::loss(a * x2 / (1.0 + a - x2), along, across);
+    (loss, reflection::schlick_ratio(x2, along, across))
+}
+
+/// The entries `0..count` in order, on threads of their own. A shared pool would hand work to a thread that waits for
+/// the table, and that work may want the table too.
+fn on_threads(count: u32, entry: fn(u32) -> Entry) -> Vec<Entry> {
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u32);
+    let each = count.div_ceil(threads).max(1);
+    std::thread::scope(|scope| {
+        let parts = (0..count).step_by(each as usize).map(|first| {
+            let range = first..(first + each).min(count);
+            (
+                range.clone(),
+                std::thread::Builder::new().spawn_scoped(scope, move || range.map(entry).collect::<Vec<_>>()),
+            )
+        });
+        // All start before the first is waited for.
+        let parts: Vec<_> = parts.collect();
+        let made = |(range, thread): (std::ops::Range<u32>, std::io::Result<std::thread::ScopedJoinHandle<'_, _>>)| {
+            // What no thread made is made here.
+            thread.ok().and_then(|thread| thread.join().ok()).unwrap_or_else(|| range.map(entry).collect())
+        };
+        parts.into_iter().flat_map(made).collect()
+    })
 }
 
 /// A place between two nodes of an axis.

@@ -25,7 +25,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let direction = background_direction(position.xy);
         var value = lamps_seen(eye(position.xy), direction, 2.0 * FAR);
         if shows(CONTRIBUTION_ENVIRONMENT) {
-            value += classical_radiance(direction, 0.0);
+            value += background_seen(eye(position.xy), direction);
         }
         return vec4f(min(value, vec3f(frame_max)), 1.0);
     }
@@ -42,8 +42,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
 // Where the ray of a pixel starts.
 fn eye(pixel: vec2f) -> vec3f {
     if view.viewer.w == 0.0 {
-        // The near plane; depth is reversed.
-        return unproject(pixel, 1.0).xyz;
+        let near = unproject(pixel, 1.0);
+        return near.xyz / near.w;
     }
     return view.viewer.xyz;
 }

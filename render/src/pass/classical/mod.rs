@@ -83,7 +83,7 @@ pub struct ClassicalPass {
     device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
     format: wgpu::TextureFormat,
-    layouts: [wgpu::BindGroupLayout; 3],
+    layouts: [wgpu::BindGroupLayout; 4],
     module: OnceLock<wgpu::ShaderModule>,
     /// Looks lobes up once, whatever the view says; a software driver compiles it in a part of the time.
     lookup: OnceLock<wgpu::RenderPipeline>,
@@ -96,6 +96,7 @@ impl ClassicalPass {
         gpu: &Gpu,
         scene_layout: &wgpu::BindGroupLayout,
         light_layout: &wgpu::BindGroupLayout,
+        background_layout: &wgpu::BindGroupLayout,
         format: wgpu::TextureFormat,
     ) -> ClassicalPass {
         let device = &gpu.device;
@@ -108,7 +109,7 @@ impl ClassicalPass {
         ClassicalPass {
             device: device.clone(),
             format,
-            layouts: [scene_layout.clone(), layout.clone(), light_layout.clone()],
+            layouts: [scene_layout.clone(), layout.clone(), light_layout.clone(), background_layout.clone()],
             layout,
             module: OnceLock::new(),
             lookup: OnceLock::new(),
@@ -148,7 +149,7 @@ impl ClassicalPass {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
-        groups: [&wgpu::BindGroup; 3],
+        groups: [&wgpu::BindGroup; 4],
         samples: u32,
         rows: std::ops::Range<u32>,
     ) {

@@ -11,5 +11,5 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let linear = display.factor * textureLoad(picture, vec2u(position.xy), 0).rgb;
-    return vec4f(tone_map(display.tone, linear), 1.0);
+    return vec4f(view_display(display.mode, display.tone, linear), 1.0);
 }

@@ -1,6 +1,7 @@
-//! The display transform: exposure, tone map and sRGB encoding into 8 bits.
+//! The display transform: exposure, tone map and sRGB encoding into 8 bits; false colours and marks of clipping instead.
 
 use burnish_core::color::tone::{ToneMap, exposure_factor};
+use burnish_core::measure::view::DisplayMode;
 
 use crate::device::Gpu;
 use crate::layout::types::DisplayData;
@@ -9,6 +10,17 @@ use crate::shader;
 
 /// Plain bytes that hold the encoded values; nothing may decode or encode them once more.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// How a picture is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Display {
+    /// Display transform.
+    pub tone: ToneMap,
+    /// Factor on the radiance before it, as a power of two.
+    pub exposure_ev: f32,
+    /// The picture, or what judges its exposure.
+    pub mode: DisplayMode,
+}
 
 /// The pipeline.
 pub struct DisplayPass {
@@ -40,10 +52,10 @@ impl DisplayPass {
         encoder: &mut wgpu::CommandEncoder,
         (sum, frames): (&wgpu::TextureView, u32),
         output: &wgpu::TextureView,
-        (tone, exposure_ev): (ToneMap, f32),
+        Display { tone, exposure_ev, mode }: Display,
     ) {
         let factor = exposure_factor(exposure_ev) / frames.max(1) as f32;
-        let data = DisplayData { factor, tone: tone.number(), pad0: 0, pad1: 0 };
+        let data = DisplayData { factor, tone: tone.number(), mode: mode.number(), pad0: 0 };
         let uniform = gpu.buffer("display", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("display"),

@@ -2,6 +2,7 @@
 //!
 //! They hold half floats of `radiance / scale`, so that a sun does not overflow them.
 
+mod background;
 mod coarse;
 mod plan;
 mod refine;
@@ -14,6 +15,7 @@ use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::shader;
 
+pub use background::{BackgroundMap, background_layout};
 pub use coarse::downsampled;
 use plan::Plan;
 pub use refine::{Progress, Refinement};

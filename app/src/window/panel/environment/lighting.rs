@@ -8,7 +8,7 @@ use eframe::egui::{self, RichText};
 
 use super::super::Context;
 use super::{overrides, row_ui};
-use crate::window::preparation::State;
+use crate::window::preparation::{Preparation, State};
 use crate::window::session::Session;
 use crate::window::widget::{choice_ui, columns, name_ui};
 
@@ -17,7 +17,7 @@ pub fn ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     let method = context.session.document().lighting.live_method();
     method_ui(ui, context.session, method);
     coverage_ui(ui, method);
-    preparation_ui(ui, context);
+    preparations_ui(ui, context);
     settings_ui(ui, context.session);
     overrides::ui(ui, context.session);
 }
@@ -53,9 +53,15 @@ fn coverage_ui(ui: &mut egui::Ui, method: &dyn Method) {
     });
 }
 
-/// How the preparation stands, and a button to make it anew.
-fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
-    let Some(preparation) = context.preparations.first() else { return };
+/// How the preparations stand, and buttons to make them anew.
+fn preparations_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
+    for (place, preparation) in context.preparations.iter_mut().enumerate() {
+        ui.push_id(place, |ui| preparation_ui(ui, preparation, place > 0));
+    }
+}
+
+/// A preparation, with the name of the method where it is that of some objects.
+fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bool) {
     let state = preparation.state();
     let (badge, hover) = match state {
         State::Needless => return,
@@ -73,6 +79,10 @@ fn preparation_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
             State::Stale | State::Missing => ui.visuals().warn_fg_color,
             _ => ui.visuals().weak_text_color(),
         };
+        if let Some(method) = preparation.method().filter(|_| is_named) {
+            let hover = "The method of objects that are lit otherwise.";
+            ui.label(RichText::new(method.info().title).small()).on_hover_text(hover);
+        }
         ui.label(RichText::new(badge).small().color(color)).on_hover_text(hover);
         if let Some((bytes, took)) = preparation.cost() {
             let text = format!("{:.1} MB, {:.1} s", bytes as f64 / 1e6, took.as_secs_f64());

@@ -13,9 +13,10 @@ const LABEL: &str = "Method of object";
 
 /// A row for each such object, and a button that makes the selected ones such.
 pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
-    let overrides = session.document().lighting.overrides.clone();
+    let document = session.document().clone();
+    let overrides = &document.lighting.overrides;
     egui::CollapsingHeader::new("Objects lit otherwise").default_open(!overrides.is_empty()).show(ui, |ui| {
-        for (key, entry) in &overrides {
+        for (key, entry) in overrides {
             ui.push_id(key, |ui| override_ui(ui, session, key, entry));
         }
         let chosen = session.selection.objects.iter().filter(|key| !overrides.contains_key(*key));

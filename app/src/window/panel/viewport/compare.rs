@@ -130,12 +130,15 @@ fn side_picture(
         let preparations = &compare.preparations[side as usize];
         let Some(prepared) = preparations.prepared(&scene.layers) else {
             // Until all is prepared, classical light stands in.
+            compare.stand_in(side, true);
+            let preparations = &compare.preparations[side as usize];
             let message = preparations.fault().map(|fault| format!("Side {}: {fault}.", side.letter()));
             let shown = stage.draw_on(screen, &scene.scene, frame);
             return (Shown { message: shown.message.or(message), ..shown }, Vec2::ONE);
         };
         subject = subject.by_points(scene.layers.clone(), prepared);
     }
+    compare.stand_in(side, false);
     let tracer = compare.tracer(reference, session, side);
     if let Some(secs) = tracer.rests_for() {
         ctx.request_repaint_after_secs(secs as f32);
@@ -233,7 +236,9 @@ fn difference_pictures(context: &mut Context<'_>, frame: &Frame) -> Option<Pictu
     let [a, b] = Side::ALL.map(|side| {
         let Context { session, stage, reference, compare, .. } = context;
         if compare.is_traced(session, side) {
-            return traced(compare.tracer_of(reference, session, side).latest());
+            // What stands in for a side is not compared.
+            let is_refined = compare.is_refined(session, side);
+            return traced(compare.tracer_of(reference, session, side).latest().filter(|_| is_refined));
         }
         let settled = compare.is_side_settled(side);
         let screen = compare.screen(session, side);
@@ -288,15 +293,21 @@ struct Live {
 fn live(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> Live {
     let Context { session, stage, compare, preparations, .. } = context;
     let layers = session.layers();
-    let prepared = if drawn_on_device(&layers) { None } else { preparations.prepared(&layers) };
+    let prepared = if drawn_on_device(layers) { None } else { preparations.prepared(layers) };
     if let Some(prepared) = prepared {
         let subject = Subject::new(session.document(), session.scene(), &frame.camera, frame.size);
-        let look = compare.second().look(subject.by_points(layers, prepared), ctx);
-        let Some(look) = look else {
-            return Live { shown: Shown { settled: true, ..Shown::default() }, part: Vec2::ONE, picture: None };
-        };
-        let shown = stage.show_on(Screen::Main, &look.picture, frame.tone, frame.exposure_ev);
-        return Live { shown, part: look.part(), picture: traced(Some(look)) };
+        let tracer = compare.second();
+        let subject = subject.by_points(layers.clone(), prepared);
+        if let Some(look) = tracer.look(subject, ctx) {
+            let shown = stage.show_on(Screen::Main, &look.picture, frame.tone, frame.exposure_ev);
+            return Live { shown, part: look.part(), picture: traced(Some(look)) };
+        }
+        // Classical light stands in, and nothing is measured.
+        let fault = tracer.failure().map(|fault| format!("The live picture cannot be drawn: {fault}."));
+        let shown = stage.draw(session.scene(), &Frame { moving: true, ..frame.clone() });
+        let settled = shown.texture.is_some() || shown.settled;
+        let message = shown.message.clone().or(fault);
+        return Live { shown: Shown { settled, message, ..shown }, part: Vec2::ONE, picture: None };
     }
     let shown = stage.draw(session.scene(), frame);
     let picture = compare.maps.live(Side::B, shown.settled, || stage.read(Screen::Main, frame.size));
@@ -349,7 +360,7 @@ pub fn radiance(context: &mut Context<'_>, side: Side, at: Vec2) -> Option<Vec3>
     if compare.view().is_some_and(CompareView::has_map) {
         return None;
     }
-    match compare.is_traced(session, side) {
+    match compare.is_refined(session, side) {
         true => compare.tracer_of(reference, session, side).latest()?.radiance(at),
         false => stage.radiance(compare.screen(session, side), at),
     }
@@ -360,7 +371,7 @@ pub fn version(context: &Context<'_>, side: Side) -> u64 {
     if context.compare.view().is_some_and(CompareView::has_map) {
         return u64::MAX;
     }
-    let traced = context.compare.is_traced(context.session, side);
+    let traced = context.compare.is_refined(context.session, side);
     let look = context.compare.tracer_of(context.reference, context.session, side).latest().filter(|_| traced);
     let settled = u64::from(context.compare.is_side_settled(side));
     // One number for both sides: the pointer may cross the line.

@@ -2,10 +2,12 @@
 
 mod cameras;
 mod compare;
+mod gizmo;
 mod navigation;
 mod overlay;
 mod readout;
 mod switch;
+mod tools;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::Side;
@@ -23,9 +25,12 @@ use crate::window::reference::{Look, Subject};
 use crate::window::request::Request;
 use crate::window::session::Session;
 use crate::window::stage::{Screen, Shown};
+use gizmo::Sight;
 use navigation::{BUTTONS, Feel, Gesture, Wheel};
+use tools::Tools;
 
 pub use navigation::summary;
+pub use tools::Tool;
 
 /// Seconds after a change during which another is expected: only quick frames are drawn.
 const MOVING_SECS: f64 = 0.15;
@@ -38,6 +43,8 @@ const READOUT_HELP: &str = "Scene-linear Rec.709 radiance under the pointer befo
 /// The viewport.
 pub struct ViewportPanel {
     gesture: Option<Gesture>,
+    /// What the left button does.
+    pub tools: Tools,
     /// Keys that were held when a button went down: they say what it does, also when they are let go first.
     held: Modifiers,
     /// Revision of the document that was drawn last, and when it changed.
@@ -55,6 +62,7 @@ impl Default for ViewportPanel {
     fn default() -> Self {
         ViewportPanel {
             gesture: None,
+            tools: Tools::default(),
             held: Modifiers::NONE,
             revision: 0,
             changed_secs: f64::NEG_INFINITY,
@@ -96,7 +104,11 @@ impl ViewportPanel {
         self.drop_preset(&response, context, &frame);
         // A click or a drop may have changed the scene: this frame shows it already.
         let shown = match view {
-            Some(_) => compare::ui(ui, &response, context, &frame),
+            Some(_) => {
+                // The tracer draws a side or the reference.
+                context.reference.draw_live(false);
+                compare::ui(ui, &response, context, &frame)
+            }
             None => single_ui(ui, rect, context, &frame),
         };
         self.overlay_ui(ui, &response, context, &frame, &shown);
@@ -191,14 +203,19 @@ impl ViewportPanel {
         let view = context.compare.view();
         for side in Side::ALL.into_iter().take(if view == Some(CompareView::SideBySide) { 2 } else { 1 }) {
             let place = compare::side_rect(view, rect, side, ui.pixels_per_point());
-            overlay::selection_ui(ui, place, context.session, &frame.camera, &mut self.outlines);
+            let sight = Sight { camera: frame.camera.clone(), rect: place };
+            overlay::selection_ui(ui, &sight, context.session, &mut self.outlines);
         }
         // Before what comes and goes: ids count the widgets before them, and a button whose id changes between press and
         // release hears no click.
         switch::ui(ui, rect, context);
+        let below = switch::tools_ui(ui, rect, self.tools.tool, context.requests);
         let selected = overlay::selection_text(context.session);
         if !selected.is_empty() {
-            overlay::line_ui(ui, rect, Align2::LEFT_TOP, &selected, "");
+            overlay::line_ui(ui, rect.with_min_y(below - 4.0), Align2::LEFT_TOP, &selected, "");
+        }
+        if view != Some(CompareView::SideBySide) {
+            self.tools.ui(ui, &Sight { camera: frame.camera.clone(), rect }, context);
         }
         let pointer = response.hover_pos().filter(|_| shown.texture.is_some() && self.gesture.is_none());
         match pointer {
@@ -285,13 +302,13 @@ fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Sh
     let scene = session.scene();
     let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
     let layers = session.layers();
-    let on_device = drawn_on_device(&layers);
+    let on_device = drawn_on_device(layers);
     reference.draw_live(!reference.is_on() && !on_device);
     if !reference.is_on() {
         // Until all is prepared, classical light stands in.
-        let prepared = if on_device { None } else { preparations.prepared(&layers) };
+        let prepared = if on_device { None } else { preparations.prepared(layers) };
         let Some(prepared) = prepared else { return (stage.draw(scene, frame), glam::Vec2::ONE) };
-        subject = subject.by_points(layers, prepared);
+        subject = subject.by_points(layers.clone(), prepared);
     }
     if let Some(look) = reference.look(subject, ctx) {
         return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());
@@ -337,6 +354,7 @@ fn frame_of(session: &Session, size: UVec2, moving: bool) -> Frame {
         settings: document.lighting.settings(),
         tone: document.view.tone.parse::<ToneMap>().unwrap_or_default(),
         exposure_ev: document.view.exposure_ev as f32,
+        mode: Default::default(),
         moving,
     }
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use burnish_core::scene::{Camera, Instance, Mesh, Projection};
-use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use burnish_core::scene::{Instance, Mesh};
+use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, pos2, vec2};
 use glam::{Affine3A, Vec3};
 
+use super::gizmo::Sight;
 use crate::window::session::Session;
 
 /// Length of the marks at the corners of a selected object, points.
@@ -55,17 +56,17 @@ fn selected(session: &Session) -> Vec<&Instance> {
 }
 
 /// Marks the corners of the selected objects.
-pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camera, outlines: &mut Outlines) {
+pub fn selection_ui(ui: &egui::Ui, sight: &Sight, session: &Session, outlines: &mut Outlines) {
     let scene = session.scene();
     let chosen = selected(session);
     if chosen.is_empty() {
         outlines.0.clear();
     }
-    let painter = ui.painter_at(rect);
+    let painter = ui.painter_at(sight.rect);
     let color = ui.visuals().selection.bg_fill.gamma_multiply(1.6);
     for instance in chosen.into_iter().filter(|instance| instance.visible) {
         let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
-        let Some(outline) = project_all(outlines.of(mesh), instance.world_from_local, camera, rect) else { continue };
+        let Some(outline) = project_all(outlines.of(mesh), instance.world_from_local, sight) else { continue };
         for (corner, x, y) in [
             (outline.left_top(), 1.0, 1.0),
             (outline.right_top(), -1.0, 1.0),
@@ -83,29 +84,12 @@ pub fn selection_ui(ui: &egui::Ui, rect: Rect, session: &Session, camera: &Camer
 }
 
 /// The rectangle around points as the camera sees them; `None` where one is behind the camera.
-fn project_all(points: &[Vec3], world_from_local: Affine3A, camera: &Camera, rect: Rect) -> Option<Rect> {
+fn project_all(points: &[Vec3], world_from_local: Affine3A, sight: &Sight) -> Option<Rect> {
     let mut outline = Rect::NOTHING;
     for point in points {
-        outline.extend_with(project(world_from_local.transform_point3(*point), camera, rect)?);
+        outline.extend_with(sight.project(world_from_local.transform_point3(*point))?);
     }
     outline.is_positive().then(|| outline.expand(3.0))
-}
-
-/// Where a world position is seen; `None` behind the camera.
-fn project(world: Vec3, camera: &Camera, rect: Rect) -> Option<Pos2> {
-    let view = camera.world_from_view.inverse().transform_point3(world);
-    let half_height = match camera.projection {
-        Projection::Perspective { yfov, near } => {
-            if -view.z <= near {
-                return None;
-            }
-            -view.z * (0.5 * yfov).tan()
-        }
-        Projection::Orthographic { ymag, .. } => ymag,
-    };
-    let scale = 0.5 * rect.height() / half_height;
-    let place = rect.center() + Vec2::new(view.x * scale, -view.y * scale);
-    place.is_finite().then_some(place)
 }
 
 /// What is selected, in words; empty without a selection.
@@ -154,6 +138,8 @@ pub fn relative(rect: Rect, pointer: Pos2) -> glam::Vec2 {
 
 #[cfg(test)]
 mod tests {
+    use burnish_core::scene::{Camera, Projection};
+
     use super::*;
 
     #[test]
@@ -165,7 +151,8 @@ mod tests {
             perspective.projection = projection;
             for at in [glam::Vec2::new(0.5, 0.5), glam::Vec2::new(0.1, 0.8)] {
                 let ray = perspective.ray(at, rect.width() / rect.height());
-                let seen = project(ray.origin + 3.0 * ray.direction, &perspective, rect).unwrap();
+                let sight = Sight { camera: perspective.clone(), rect };
+                let seen = sight.project(ray.origin + 3.0 * ray.direction).unwrap();
                 assert!((relative(rect, seen) - at).length() < 1e-4, "{at} {seen:?}");
             }
         }
@@ -177,11 +164,12 @@ mod tests {
         let camera = Camera::look_at("c", Vec3::new(0.0, 0.0, 0.5), Vec3::ZERO, 0.7);
         let corners: Vec<Vec3> =
             [-1.0, 1.0].into_iter().flat_map(|z| [Vec3::new(-1.0, -1.0, z), Vec3::new(1.0, 1.0, z)]).collect();
-        assert_eq!(project_all(&corners, Affine3A::IDENTITY, &camera, rect), None);
+        let sight = |camera: Camera| Sight { camera, rect };
+        assert_eq!(project_all(&corners, Affine3A::IDENTITY, &sight(camera)), None);
         let far = Camera::look_at("c", Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, 0.7);
-        let outline = project_all(&corners, Affine3A::IDENTITY, &far, rect).unwrap();
+        let outline = project_all(&corners, Affine3A::IDENTITY, &sight(far.clone())).unwrap();
         assert!(outline.contains(rect.center()) && rect.contains_rect(outline));
-        assert_eq!(project_all(&[], Affine3A::IDENTITY, &far, rect), None);
+        assert_eq!(project_all(&[], Affine3A::IDENTITY, &sight(far)), None);
     }
 
     #[test]

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, Align, Align2, Button, Layout, Rect, RichText, Role, UiBuilder, Visuals, WidgetInfo, vec2};
 
-use super::overlay;
+use super::{Tool, overlay};
 use crate::window::commands::Command;
 use crate::window::compare::CompareView;
 use crate::window::panel::Context;
-use crate::window::request::Request;
+use crate::window::request::{Request, Requests};
 
 /// Height of a row of buttons, points.
 const HEIGHT: f32 = 24.0;
@@ -59,7 +59,7 @@ pub fn ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>) {
             command: Command::Compare(CompareView::Error),
         },
     ];
-    let bottom = row_ui(ui, rect, 194.0, &choices, context);
+    let bottom = row_ui(ui, (rect, Align2::RIGHT_TOP), 194.0, &choices, context.requests);
     let below = Rect::from_min_max(egui::pos2(rect.left(), bottom - 4.0), rect.max);
     if sides {
         let of = |view, label, hover| Choice {
@@ -73,7 +73,7 @@ pub fn ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>) {
             of(CompareView::SideBySide, "Side by side", "Each in its half."),
             of(CompareView::Difference, "Difference", "Where B differs from A, as a heat map."),
         ];
-        row_ui(ui, below, 194.0, &choices, context);
+        row_ui(ui, (below, Align2::RIGHT_TOP), 194.0, &choices, context.requests);
     } else if traced || view == Some(CompareView::Error) {
         let timed = context.stage.status().is_none_or(|status| !status.fixed_clock);
         let text = match traced {
@@ -84,10 +84,19 @@ pub fn ui(ui: &mut egui::Ui, rect: Rect, context: &mut Context<'_>) {
     }
 }
 
-/// A row of buttons; returns where it ends below.
-fn row_ui(ui: &mut egui::Ui, rect: Rect, width: f32, choices: &[Choice], context: &mut Context<'_>) -> f32 {
+/// The tools, at the top left of the picture; returns where they end below.
+pub fn tools_ui(ui: &mut egui::Ui, rect: Rect, tool: Tool, requests: &mut Requests) -> f32 {
+    let choices = Tool::ALL.map(|other| {
+        let command = Command::Tool(other);
+        Choice { label: other.title(), on: other == tool, hover: other.help(), command }
+    });
+    row_ui(ui, (rect, Align2::LEFT_TOP), 180.0, &choices, requests)
+}
+
+/// A row of buttons in a corner; returns where it ends below.
+fn row_ui(ui: &mut egui::Ui, (rect, corner): (Rect, Align2), width: f32, choices: &[Choice], to: &mut Requests) -> f32 {
     let size = vec2(width.min(rect.width() - 16.0), HEIGHT);
-    let place = Align2::RIGHT_TOP.align_size_within_rect(size, rect.shrink(8.0));
+    let place = corner.align_size_within_rect(size, rect.shrink(8.0));
     ui.painter().rect_filled(place, 4.0, overlay::SHADE);
     let layout = Layout::left_to_right(Align::Center).with_main_justify(false);
     let mut row = ui.new_child(UiBuilder::new().max_rect(place.shrink(2.0)).layout(layout));
@@ -100,7 +109,7 @@ fn row_ui(ui: &mut egui::Ui, rect: Rect, width: f32, choices: &[Choice], context
         let response = row.add(button).on_hover_text(*hover);
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, *on, *label));
         if response.clicked() && !on {
-            context.requests.push(Request::Command(*command));
+            to.push(Request::Command(*command));
         }
     }
     place.bottom()

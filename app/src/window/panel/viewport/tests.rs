@@ -195,7 +195,7 @@ fn a_preset_that_is_dropped_goes_on_the_material_under_it() {
 fn a_pick_selects_shift_adds_and_nothing_deselects() {
     let mut session = session();
     let keys = session.resolved().object_keys.clone();
-    let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO });
+    let at = |instance| Some(Picked { instance, position: glam::Vec3::ZERO, normal: glam::Vec3::Z });
     select(&mut session, at(0), false);
     assert_eq!(session.selection.objects, keys[..1]);
     assert_eq!(session.selection.material, session.scene().instances[0].material);
@@ -217,4 +217,52 @@ fn the_picture_says_what_it_shows() {
     let key = session.resolved().object_keys[0].clone();
     session.edit("Hide", "", |document| document.edit_object(&key, |object| object.hidden = true));
     assert!(summary_text(&session).contains(&format!("{} object", all - 1)));
+}
+
+/// Drags a handle by its name.
+fn drag_handle(bench: &mut Harness<Bench>, name: &str, by: Vec2) {
+    let start = bench.get_by_label(name).rect().center();
+    let press = |pos, pressed| {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        Event::PointerButton { pos, button, pressed, modifiers }
+    };
+    bench.hover_at(start);
+    bench.run_steps(1);
+    bench.event(press(start, true));
+    bench.run_steps(1);
+    for step in 1..=4 {
+        bench.hover_at(start + by * (step as f32 / 4.0));
+        bench.run_steps(1);
+    }
+    bench.event(press(start + by, false));
+    bench.run_steps(2);
+}
+
+#[test]
+fn handles_move_turn_and_scale_an_object_in_one_step_each_and_leave_the_camera() {
+    let mut bench = bench();
+    let place = bench.state().session.resolved().object_keys.len() - 1;
+    let key = bench.state().session.resolved().object_keys[place].clone();
+    let name = bench.state().session.scene().instances[place].name.clone();
+    bench.state_mut().session.selection.objects = vec![key.clone()];
+    let before = document(&bench);
+    for (tool, handle, by) in [
+        (Tool::Move, format!("Move {name} along y"), vec2(0.0, -40.0)),
+        (Tool::Rotate, format!("Turn {name}"), vec2(0.0, -40.0)),
+        (Tool::Scale, format!("Scale {name}"), vec2(60.0, 0.0)),
+    ] {
+        bench.state_mut().panel.tools.tool = tool;
+        bench.run_steps(2);
+        let steps = bench.state().session.history().past().len();
+        drag_handle(&mut bench, &handle, by);
+        assert_eq!(bench.state().session.history().past().len(), steps + 1, "{handle} is one step");
+        assert_eq!(document(&bench).view, before.view, "{handle}");
+    }
+    let put = document(&bench).transform(&key);
+    assert!(put.by[1] > 0.0 && put.by[0] == 0.0 && put.by[2] == 0.0, "{put:?}");
+    assert!(put.scale[0] > 1.3 && put.scale[0] == put.scale[2], "{put:?}");
+    for _ in 0..3 {
+        bench.state_mut().session.undo();
+    }
+    assert_eq!(document(&bench), before);
 }

@@ -1,11 +1,29 @@
-//! Reading an equirectangular environment: directions, texels, solid angles.
+//! Environments: reading equirectangular maps, what the eye sees of them, and maps made by code.
+
+mod background;
+mod blur;
+pub mod ground;
+mod sky;
+mod split;
+mod studio;
 
 use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
 use super::Environment;
+use crate::leaf::Leaf;
 use crate::math::cube;
+
+pub use background::{Backdrop, Background};
+pub use blur::{BLUR_MAX_DEG, blurred};
+pub use ground::Ground;
+pub use sky::{SkyModel, TURBIDITY};
+pub use split::{NoSun, Split, Sun, split_sun};
+pub use studio::{Shape, SoftBox, Studio, WIDEST, kelvin_color};
+
+/// The WGSL twins of what is here.
+pub const LEAVES: &[&Leaf] = &[&ground::LEAF];
 
 /// The rotation of an environment about +y.
 #[derive(Clone, Copy, Debug)]
@@ -34,11 +52,30 @@ impl Turn {
     }
 }
 
+/// Unit direction of an azimuth from the front (+z) toward +x and an elevation above the horizon, radians.
+pub fn direction(azimuth: f32, elevation: f32) -> Vec3 {
+    let ((sin, cos), (rise, level)) = (azimuth.sin_cos(), elevation.sin_cos());
+    Vec3::new(level * sin, rise, level * cos)
+}
+
 impl Environment {
     /// A map from its parts, unrotated, at strength 1. Rows from the top; `texels` should hold `width * height` colours,
     /// what is missing is black.
     pub fn new(name: &str, width: u32, height: u32, texels: Vec<Vec3>) -> Environment {
-        Environment { name: name.into(), width, height, texels: texels.into(), rotation: 0.0, strength: 1.0 }
+        Environment {
+            name: name.into(),
+            width,
+            height,
+            texels: texels.into(),
+            rotation: 0.0,
+            strength: 1.0,
+            tint: Vec3::ONE,
+        }
+    }
+
+    /// Factor from a texel to radiance: strength times tint.
+    pub fn scale(&self) -> Vec3 {
+        self.strength * self.tint
     }
 
     /// Where a world direction is seen, in [0, 1]^2 from the top left.
@@ -54,7 +91,7 @@ impl Environment {
         Turn::by(self.rotation).to_world(d)
     }
 
-    /// Radiance from a world direction, strength included: bilinear, wrapping around, stopping at the poles.
+    /// Radiance from a world direction, strength and tint included: bilinear, wrapping around, stopping at the poles.
     pub fn radiance(&self, world: Vec3) -> Vec3 {
         self.radiance_at(self.uv_from_direction(world))
     }
@@ -68,7 +105,7 @@ impl Environment {
         let (y0, y1) = (self.row(low.y as i64), self.row(low.y as i64 + 1));
         let top = self.texel(x0, y0).lerp(self.texel(x1, y0), f.x);
         let bottom = self.texel(x0, y1).lerp(self.texel(x1, y1), f.x);
-        self.strength * top.lerp(bottom, f.y)
+        self.scale() * top.lerp(bottom, f.y)
     }
 
     fn column(&self, x: i64) -> usize {
@@ -87,6 +124,20 @@ impl Environment {
     pub fn texel_direction(&self, x: u32, y: u32, inside: Vec2) -> Vec3 {
         let size = Vec2::new(self.width as f32, self.height as f32);
         self.direction_from_uv((Vec2::new(x as f32, y as f32) + inside) / size)
+    }
+
+    /// Light on a white plane that faces up and sees all of the sky above: irradiance in lx per
+    /// channel. Turning the map does not change it.
+    pub fn irradiance_up(&self) -> Vec3 {
+        let mut sum = glam::DVec3::ZERO;
+        let width = self.width.max(1) as usize;
+        for (y, row) in self.texels.chunks(width).enumerate().take(self.height as usize) {
+            let edge = |row: usize| (std::f64::consts::PI * row as f64 / f64::from(self.height)).cos().max(0.0);
+            let total: glam::DVec3 = row.iter().map(|texel| texel.as_dvec3()).sum();
+            // The integral of cos theta over a texel.
+            sum += total * (edge(y).powi(2) - edge(y + 1).powi(2)) * std::f64::consts::PI / f64::from(self.width);
+        }
+        self.scale() * sum.as_vec3()
     }
 
     /// Solid angle of a texel of a row, in sr; those of the whole map sum to 4 pi.

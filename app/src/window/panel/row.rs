@@ -1,0 +1,43 @@
+//! Rows of the panels: settings of the document, under titles.
+
+use burnish_core::document::Document;
+use burnish_core::param::{ParamSpec, ParamValue};
+use eframe::egui;
+
+use crate::window::session::Session;
+use crate::window::widget::{Change, param_ui};
+
+/// Rows under a title that can be folded.
+pub fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
+    egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);
+    ui.add_space(4.0);
+}
+
+/// A row for a value of the document: `set` writes a new one as the step `label`.
+pub fn row_ui(
+    ui: &mut egui::Ui,
+    session: &mut Session,
+    (spec, label): (&ParamSpec, &str),
+    value: ParamValue,
+    set: impl FnOnce(&mut Document, ParamValue),
+) {
+    let edit = param_ui(ui, spec, value, spec.default());
+    match edit.change {
+        Some(Change::Set(value)) => session.edit(label, "", |document| set(document, value)),
+        Some(Change::Reset) => session.edit(label, "", |document| set(document, spec.default())),
+        None => {}
+    }
+    // A run of camera moves is one step, whatever moves it.
+    if edit.ended && label != burnish_core::document::VIEW_LABEL {
+        session.seal();
+    }
+}
+
+/// The number of a value that is one.
+pub fn number(value: ParamValue) -> f64 {
+    match value {
+        ParamValue::Number(number) => number,
+        ParamValue::Integer(number) => number as f64,
+        _ => 0.0,
+    }
+}

@@ -29,6 +29,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         trial("a ball under a rectangle or a sphere is that of the path tracer", gpu, balls),
         trial("soft shadows of lights with an area are about those of the path tracer", gpu, shadows),
+        trial("lights are seen, linked and left out of reflections as by the path tracer", gpu, switches),
         trial("what each source contributes adds up to the live picture", gpu, contributions),
         trial("live lights without size or power, in a surface or around it leave numbers", gpu, numbers),
         trial("lights with an area are the same on device and processor", gpu, || {
@@ -104,7 +105,7 @@ fn balls() {
                 scene.lights = vec![light.clone()];
                 scene.materials[0].reflectance =
                     Reflectance::Preset { id: id.into(), fresnel: Arc::new(metal.fresnel(form)) };
-                let size = UVec2::splat(64);
+                let size = UVec2::splat(48);
                 let picture = live(&scene, size, 16, &[Contribution::All]).remove(0);
                 let error = apart(&picture, &traced(&scene, size, 512));
                 table += &format!(" {:.2} %", 100.0 * error);
@@ -151,13 +152,44 @@ fn shadows() {
     ];
     for (name, kind) in kinds {
         let scene = floor(kind);
-        let size = UVec2::new(96, 64);
+        let size = UVec2::new(60, 40);
         let error = apart(&live(&scene, size, 16, &[Contribution::All])[0], &traced(&scene, size, 512));
         table += &format!("{name}: {:.2} %\n", 100.0 * error);
         worst = worst.max(error);
     }
     println!("{table}");
     assert!(worst <= SHADOWED, "mean error of the floor over {SHADOWED}\n{table}");
+}
+
+/// Lights that the eye sees, that leave the floor out, that only the matte base takes up, that nothing hides.
+fn switches() {
+    let mut scene = floor(LightKind::Sphere { radius: 0.2 });
+    scene.materials[0].specular = 1.0;
+    scene.materials[0].roughness = 0.4;
+    scene.lights[0].position = Vec3::new(-0.2, 0.6, -0.2);
+    let plain = scene.lights[0].clone();
+    let lights = [
+        ("seen", Light { camera: true, ..plain.clone() }),
+        ("rectangle seen", Light { camera: true, shadows: false, ..rectangle() }),
+        ("sun seen", Light { camera: true, direction: Vec3::new(0.0, 0.2, 1.0).normalize(), ..sun() }),
+        ("not for the floor", Light { unlit: vec![0], ..plain.clone() }),
+        ("not reflected", Light { reflections: false, ..plain.clone() }),
+        ("point not reflected", Light { kind: LightKind::Point, reflections: false, ..plain.clone() }),
+        ("without shadows", Light { shadows: false, ..plain }),
+    ];
+    // Low enough to see over the edge of the floor.
+    scene.cameras[0] = Camera::look_at("main", Vec3::new(0.0, 0.5, 2.2), Vec3::new(0.0, 0.3, 0.0), 0.8);
+    let size = UVec2::new(60, 40);
+    let mut table = String::new();
+    let mut worst = 0.0_f64;
+    for (name, light) in lights {
+        scene.lights = vec![light];
+        let error = apart(&live(&scene, size, 16, &[Contribution::All])[0], &traced(&scene, size, 1024));
+        table += &format!("{name}: {:.2} %\n", 100.0 * error);
+        worst = worst.max(error);
+    }
+    println!("{table}");
+    assert!(worst <= SHADOWED, "mean error over {SHADOWED}\n{table}");
 }
 
 fn contributions() {

@@ -81,7 +81,7 @@ impl<'a> Drawing<'a> {
         let Some(point) = eye.point() else { return eye.miss() };
         let lit = self.lit[self.of_instance.get(point.instance() as usize).map_or(0, |place| *place as usize)];
         let Some(points) = lit.points else { return self.world.sample(view, pixel, index) };
-        let mut radiance = points.radiance(&point, lit.prepared, lit.settings, for_method);
+        let mut radiance = points.radiance(&point, lit.prepared, lit.settings, for_method) + eye.lamps_seen();
         if lit.adds_emission {
             radiance += point.emission();
         }

@@ -1,6 +1,6 @@
 //! Lights with an area, live: against the path tracer, against the processor, and one light at a time.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use burnish_core::lighting::classical;
 use burnish_core::material::preset;
@@ -23,12 +23,15 @@ const ROUGHNESSES: [f32; 6] = [0.1, 0.2, 0.35, 0.5, 0.7, 1.0];
 const UNSHADOWED: f64 = 0.03;
 /// The same of a matte floor, of which an eighth lies in penumbras.
 const SHADOWED: f64 = 0.03;
+/// The same of a small picture, in which edges of bright lights and of the bar have 16 samples a pixel.
+const SEEN: f64 = 0.06;
 
 pub fn trials() -> Vec<Trial> {
     let gpu: &[Need] = &[Need::Gpu];
     vec![
         trial("a ball under a rectangle or a sphere is that of the path tracer", gpu, balls),
         trial("soft shadows of lights with an area are about those of the path tracer", gpu, shadows),
+        trial("lights are seen, linked and left out of reflections as by the path tracer", gpu, switches),
         trial("what each source contributes adds up to the live picture", gpu, contributions),
         trial("live lights without size or power, in a surface or around it leave numbers", gpu, numbers),
         trial("lights with an area are the same on device and processor", gpu, || {
@@ -41,7 +44,9 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn black() -> Option<Arc<Environment>> {
-    Some(Arc::new(Environment::new("black", 8, 4, vec![Vec3::ZERO; 32])))
+    static BLACK: LazyLock<Arc<Environment>> =
+        LazyLock::new(|| Arc::new(Environment::new("black", 8, 4, vec![Vec3::ZERO; 32])));
+    Some(BLACK.clone())
 }
 
 fn aimed(kind: impl Fn(Vec3) -> LightKind, position: Vec3, intensity: Vec3) -> Light {
@@ -60,17 +65,18 @@ fn sun() -> Light {
     aimed(kind, Vec3::new(-1.0, 2.0, 0.5), Vec3::new(0.5, 0.6, 0.8))
 }
 
-fn live(scene: &Scene, size: UVec2, frames: u32, shown: &[Contribution]) -> Vec<Picture> {
+/// A device with its pipelines, for many scenes.
+fn renderer(scene: &Scene) -> Renderer {
     let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
-    let mut renderer = Renderer::new(&gpu, scene).unwrap_or_else(|e| panic!("{e}"));
+    Renderer::new(&gpu, scene).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn live(renderer: &mut Renderer, scene: &Scene, size: UVec2, frames: u32) -> Picture {
+    renderer.set_scene(&Arc::new(scene.clone())).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(renderer.unshadowed_lights(), &[] as &[String]);
     let camera = scene.cameras[0].clone();
     let view = View { size, camera, settings: Settings::new(classical::PARAMS), jitter_frames: frames };
-    let pictures = shown.iter().map(|contribution| {
-        renderer.show(*contribution);
-        renderer.render(&view).unwrap_or_else(|e| panic!("{e}"))
-    });
-    pictures.collect()
+    renderer.render(&view).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn traced(scene: &Scene, size: UVec2, samples: u32) -> Picture {
@@ -94,6 +100,7 @@ fn balls() {
         [rectangle(), aimed(|_| LightKind::Sphere { radius: 0.12 }, Vec3::new(-0.3, 0.3, 0.3), Vec3::splat(6.0))];
     let mut table = String::new();
     let mut worst = 0.0_f64;
+    let mut device = renderer(&floor(LightKind::Point));
     for (id, form) in [("Au", Form::Fitted), ("Al", Form::Spectral)] {
         let metal = preset::library().iter().find(|preset| preset.id == id).expect("a preset");
         for light in &lights {
@@ -104,8 +111,8 @@ fn balls() {
                 scene.lights = vec![light.clone()];
                 scene.materials[0].reflectance =
                     Reflectance::Preset { id: id.into(), fresnel: Arc::new(metal.fresnel(form)) };
-                let size = UVec2::splat(64);
-                let picture = live(&scene, size, 16, &[Contribution::All]).remove(0);
+                let size = UVec2::splat(48);
+                let picture = live(&mut device, &scene, size, 16);
                 let error = apart(&picture, &traced(&scene, size, 512));
                 table += &format!(" {:.2} %", 100.0 * error);
                 worst = worst.max(error);
@@ -149,15 +156,48 @@ fn shadows() {
         ("sun 1 degree", LightKind::Directional { angular_radius: 0.0175 }),
         ("sun 6 degrees", LightKind::Directional { angular_radius: 0.1 }),
     ];
+    let mut device = renderer(&floor(LightKind::Point));
     for (name, kind) in kinds {
         let scene = floor(kind);
-        let size = UVec2::new(96, 64);
-        let error = apart(&live(&scene, size, 16, &[Contribution::All])[0], &traced(&scene, size, 512));
+        let size = UVec2::new(60, 40);
+        let error = apart(&live(&mut device, &scene, size, 16), &traced(&scene, size, 512));
         table += &format!("{name}: {:.2} %\n", 100.0 * error);
         worst = worst.max(error);
     }
     println!("{table}");
     assert!(worst <= SHADOWED, "mean error of the floor over {SHADOWED}\n{table}");
+}
+
+/// Lights that the eye sees, that leave the floor out, that only the matte base takes up, that nothing hides.
+fn switches() {
+    let mut scene = floor(LightKind::Sphere { radius: 0.12 });
+    scene.materials[0].specular = 1.0;
+    scene.materials[0].roughness = 0.4;
+    scene.lights[0].position = Vec3::new(-0.3, 0.9, -0.2);
+    let plain = scene.lights[0].clone();
+    let lights = [
+        ("seen", Light { camera: true, ..plain.clone() }),
+        ("rectangle seen", Light { camera: true, shadows: false, ..rectangle() }),
+        ("sun seen", Light { camera: true, direction: Vec3::new(0.1, -0.1, 1.0).normalize(), ..sun() }),
+        ("not for the floor", Light { unlit: vec![0], ..plain.clone() }),
+        ("not reflected", Light { reflections: false, ..plain.clone() }),
+        ("point not reflected", Light { kind: LightKind::Point, reflections: false, ..plain.clone() }),
+        ("without shadows", Light { shadows: false, ..plain }),
+    ];
+    // Low enough to see the lights over the edge of the floor.
+    scene.cameras[0] = Camera::look_at("main", Vec3::new(0.0, 1.0, 2.2), Vec3::new(0.0, 0.4, 0.0), 0.9);
+    let size = UVec2::new(60, 40);
+    let mut table = String::new();
+    let mut worst = 0.0_f64;
+    let mut device = renderer(&scene);
+    for (name, light) in lights {
+        scene.lights = vec![light];
+        let error = apart(&live(&mut device, &scene, size, 16), &traced(&scene, size, 1024));
+        table += &format!("{name}: {:.2} %\n", 100.0 * error);
+        worst = worst.max(error);
+    }
+    println!("{table}");
+    assert!(worst <= SEEN, "mean error over {SEEN}\n{table}");
 }
 
 fn contributions() {
@@ -170,7 +210,12 @@ fn contributions() {
     let lamp = aimed(|_| LightKind::Point, Vec3::new(0.5, 0.5, 0.5), Vec3::splat(0.5));
     scene.lights = vec![rectangle(), Light { camera: true, ..sphere }, lamp, sun()];
     let shown: Vec<_> = [Contribution::All].into_iter().chain(Contribution::each(scene.lights.len())).collect();
-    let pictures = live(&scene, UVec2::splat(64), 2, &shown);
+    let mut device = renderer(&scene);
+    let mut of = |shown: &Contribution| {
+        device.show(*shown);
+        live(&mut device, &scene, UVec2::splat(64), 2)
+    };
+    let pictures: Vec<Picture> = shown.iter().map(&mut of).collect();
     let mut sum = vec![Vec4::ZERO; pictures[0].texels.len()];
     for picture in &pictures[1..] {
         assert!(picture.texels.iter().any(|texel| texel.truncate().max_element() > 1e-3), "a source shows nothing");
@@ -204,9 +249,10 @@ fn numbers() {
     let mut scene = gallery::open("ball?material=Ag&roughness=0").expect("a scene");
     scene.environment = black();
     scene.materials[0].coat = 0.5;
+    let mut device = renderer(&scene);
     for camera in [false, true] {
         scene.lights = lights.iter().map(|light| Light { camera, ..light.clone() }).collect();
-        let picture = live(&scene, UVec2::splat(32), 2, &[Contribution::All]).remove(0);
+        let picture = live(&mut device, &scene, UVec2::splat(32), 2);
         assert!(picture.texels.iter().all(|texel| texel.is_finite() && texel.min_element() >= 0.0));
     }
 }

@@ -15,6 +15,12 @@ const AREA_HORIZON: f32 = 1e-4;
 // Most by which a small light is raised over what the cosines give.
 const AREA_RATIO_MAX: f32 = 4.0;
 
+// Parts of a streak of very unequal widths, from where it is cut, and the width of a part over its share of the slopes.
+const AREA_PARTS: u32 = 8u;
+const AREA_BENDING: f32 = 1.2;
+const AREA_STREAK: f32 = 0.6;
+const AREA_PART_WIDTH: f32 = 0.8;
+
 const AREA_NOTHING: u32 = 0u;
 const AREA_RECTANGLE: u32 = 1u;
 const AREA_CAP: u32 = 2u;
@@ -250,25 +256,102 @@ fn area_above(v: vec3f) -> vec3f {
     return normalize(vec3f(unit.xy, max(unit.z, 1e-4)));
 }
 
-// x: share of the lobe that a polygon fills. yzw: mean direction of the light that is reflected, about.
-fn area_filling(lobe: AreaCosines, polygon: ptr<function, AreaPolygon>) -> vec4f {
-    var flat = *polygon;
+// Into how many parts the lobe for such widths is cut.
+fn area_part_count(alpha: vec2f) -> u32 {
+    let a = ggx_clamp_alpha(alpha);
+    let wide = max(a.x, a.y);
+    return select(1u, AREA_PARTS, min(a.x, a.y) < wide * min(AREA_BENDING * wide, AREA_STREAK));
+}
+
+// Some of the microfacets, about a normal of their own; weight 0 where the viewer sees none.
+struct AreaPart {
+    frame: Frame,
+    lobe: AreaCosines,
+    weight: f32,
+}
+
+fn area_part(index: u32, wo: vec3f, alpha: vec2f, masking: u32) -> AreaPart {
+    let a = ggx_clamp_alpha(alpha);
+    let up = vec3f(0.0, 0.0, 1.0);
+    if area_part_count(a) == 1u {
+        let frame = Frame(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), up);
+        return AreaPart(frame, area_cosines(wo, a, masking), 1.0);
+    }
+    let wide = max(a.x, a.y);
+    let along = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), a.x > a.y);
+    let t = f32(2u * index + 1u) / f32(AREA_PARTS) - 1.0;
+    let rest = sqrt((1.0 - t) * (1.0 + t));
+    let x = wide * t / rest;
+    let tilt2 = 1.0 + x * x;
+    let normal = along * x + up;
+    let n = normal / sqrt(tilt2);
+    let tangent = (along - up * x) / sqrt(tilt2);
+    let frame = Frame(tangent, cross(n, tangent), n);
+    let step = 2.0 / f32(AREA_PARTS) * wide / (rest * rest * rest);
+    let widths = vec2f(AREA_PART_WIDTH * step / tilt2, min(a.x, a.y) / (rest * sqrt(tilt2)));
+    return AreaPart(frame, area_cosines(frame_to_local(frame, wo), widths, masking), max(dot(wo, normal), 0.0));
+}
+
+// Irradiance vector of a polygon on cosines, before M.
+fn area_filled(lobe: AreaCosines, frame: Frame, polygon: ptr<function, AreaPolygon>) -> vec3f {
+    var local = *polygon;
+    for (var i = 0u; i < local.count; i++) {
+        local.corners[i] = frame_to_local(frame, local.corners[i]);
+    }
+    var flat = area_clipped(&local);
     for (var i = 0u; i < flat.count; i++) {
         flat.corners[i] = area_flatten(lobe, flat.corners[i]);
     }
     var left = area_clipped(&flat);
-    let flux = area_flux(&left);
-    let share = clamp(flux.z * INV_PI / area_above_horizon(lobe), 0.0, 1.0);
-    return vec4f(share, area_above(area_shape(lobe, flux)));
+    return area_flux(&left);
+}
+
+// How much of a lobe a polygon fills, and from where: unit, the mean direction of the light that is reflected, about.
+struct AreaFilling {
+    share: f32,
+    // Of the cosines, in that direction, before the albedo.
+    density: f32,
+    wi: vec3f,
+}
+
+fn area_filling(wo: vec3f, alpha: vec2f, masking: u32, polygon: ptr<function, AreaPolygon>) -> AreaFilling {
+    let count = area_part_count(alpha);
+    var filled = 0.0;
+    var whole = 0.0;
+    var toward = vec3f(0.0);
+    for (var i = 0u; i < count; i++) {
+        let part = area_part(i, wo, alpha, masking);
+        if part.weight <= 0.0 {
+            continue;
+        }
+        let flux = area_filled(part.lobe, part.frame, polygon);
+        filled += part.weight * flux.z * INV_PI;
+        whole += part.weight * area_above_horizon(part.lobe);
+        let shaped = area_shape(part.lobe, flux);
+        let length2 = dot(shaped, shaped);
+        if length2 > 1e-37 {
+            toward += frame_to_world(part.frame, shaped * inverseSqrt(length2)) * (part.weight * flux.z);
+        }
+    }
+    let wi = area_above(toward);
+    var density = 0.0;
+    for (var i = 0u; i < count; i++) {
+        let part = area_part(i, wo, alpha, masking);
+        if part.weight > 0.0 {
+            density += part.weight * area_density(part.lobe, frame_to_local(part.frame, wi));
+        }
+    }
+    let inside = max(whole, 1e-20);
+    return AreaFilling(clamp(filled / inside, 0.0, 1.0), density / inside, wi);
 }
 
 // Radiance for F = 1 by a lobe of this albedo, whose cosine at the half vector and BRDF toward the light are `facet`: the
 // share, and for small lights the ratio of the lobe to the cosines.
-fn area_reflected(lobe: AreaCosines, filled: vec4f, albedo: f32, facet: vec2f) -> f32 {
-    let expected = max(albedo * area_density(lobe, filled.yzw), 1e-20);
-    let ratio = clamp(facet.y * filled.w * area_above_horizon(lobe) / expected, 0.0, AREA_RATIO_MAX);
-    let left = (1.0 - filled.x) * (1.0 - filled.x);
-    return filled.x * albedo * (1.0 + left * (ratio - 1.0));
+fn area_reflected(filled: AreaFilling, albedo: f32, facet: vec2f) -> f32 {
+    let expected = max(albedo * filled.density, 1e-20);
+    let ratio = clamp(facet.y * filled.wi.z / expected, 0.0, AREA_RATIO_MAX);
+    let left = (1.0 - filled.share) * (1.0 - filled.share);
+    return filled.share * albedo * (1.0 + left * (ratio - 1.0));
 }
 
 // Cosine at the half vector of two directions.
@@ -295,11 +378,10 @@ fn area_response(
         }
         value = spread * max(flux.z, 0.0);
         if reflections {
-            let lobe = area_cosines(wo, s.alpha, s.masking);
-            let filled = area_filling(lobe, &polygon);
-            let facet = layered_facet(s, wo, filled.yzw);
-            let glossy = area_reflected(lobe, filled, layered_lobe_albedo(s, wo), facet);
-            value += glossy * layered_reflectance(s, area_half_cosine(wo, filled.yzw));
+            let filled = area_filling(wo, s.alpha, s.masking, &polygon);
+            let facet = layered_facet(s, wo, filled.wi);
+            let glossy = area_reflected(filled, layered_lobe_albedo(s, wo), facet);
+            value += glossy * layered_reflectance(s, area_half_cosine(wo, filled.wi));
         }
     }
     if s.coat <= 0.0 {
@@ -313,10 +395,9 @@ fn area_response(
         return value;
     }
     let widths = vec2f(s.coat_alpha);
-    let lobe = area_cosines(coat_wo, widths, s.masking);
-    let filled = area_filling(lobe, &polygon);
-    let facet = ggx_microfacet(coat_wo, filled.yzw, widths, s.masking);
-    let over = area_reflected(lobe, filled, 1.0 - ggx_loss(coat_wo, widths, s.masking), facet);
-    let cos_theta = area_half_cosine(coat_wo, filled.yzw);
+    let filled = area_filling(coat_wo, widths, s.masking, &polygon);
+    let facet = ggx_microfacet(coat_wo, filled.wi, widths, s.masking);
+    let over = area_reflected(filled, 1.0 - ggx_loss(coat_wo, widths, s.masking), facet);
+    let cos_theta = area_half_cosine(coat_wo, filled.wi);
     return value + s.coat * over * fresnel_schlick(vec3f(COAT_F0), 1.0, cos_theta).x;
 }

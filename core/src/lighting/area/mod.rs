@@ -7,6 +7,7 @@
 mod cosines;
 pub mod fit;
 pub mod light;
+mod parts;
 mod polygon;
 #[cfg(test)]
 mod tests;
@@ -19,10 +20,11 @@ use crate::leaf::Leaf;
 use crate::math::frame::Frame;
 use crate::surface::coat;
 use crate::surface::fresnel::schlick;
-use crate::surface::ggx::{self, albedo};
+use crate::surface::ggx::{self, Masking, albedo};
 use crate::surface::layered::{self, Spread, Surface};
 
 pub use cosines::{Cosines, NODES, NUMBERS, ROUGHNESS_MIN, STRIDE, table};
+pub use parts::{BENDING, PART_WIDTH, PARTS, Part, STREAK};
 pub use polygon::{CORNERS_MAX, Polygon};
 
 /// The WGSL twin.
@@ -134,19 +136,33 @@ pub struct Reflected {
     pub cos_theta: f32,
 }
 
-/// By a lobe toward `wo` that returns the share `albedo` of even light; `facet` is its cosine at the half vector and its
-/// BRDF for F = 1, toward the light.
+/// By the lobe of GGX of these widths toward `wo`, made to return the share `albedo` of even light; `facet` is the cosine at
+/// the half vector and the BRDF for F = 1, toward the light.
 ///
 /// The cosines give the share of the lobe that the polygon fills. They have not quite the shape of the lobe, so a small
 /// light is multiplied by the ratio of both at its place; a light that fills the lobe needs nothing, between goes
 /// `(1 - share)^2`.
-pub fn reflected(lobe: &Cosines, wo: Vec3, polygon: &Polygon, albedo: f32, facet: impl Fn(Vec3) -> Vec2) -> Reflected {
-    let flux = lobe.flattened(polygon).flux();
-    let above_horizon = lobe.above();
-    let share = (flux.z * FRAC_1_PI / above_horizon).clamp(0.0, 1.0);
-    let wi = above(lobe.shape(flux));
-    let there = facet(wi);
-    let ratio = (there.y * wi.z * above_horizon / (albedo * lobe.density(wi)).max(1e-20)).clamp(0.0, RATIO_MAX);
+pub fn reflected(
+    wo: Vec3,
+    alpha: Vec2,
+    masking: Masking,
+    polygon: &Polygon,
+    albedo: f32,
+    facet: impl Fn(Vec3) -> Vec2,
+) -> Reflected {
+    let parts = || (0..parts::count(alpha)).filter_map(|index| parts::part(index, wo, alpha, masking));
+    let (mut filled, mut whole, mut toward) = (0.0, 0.0, Vec3::ZERO);
+    for Part { frame, lobe, weight } in parts() {
+        let local = polygon.map(|corner| frame.to_local(corner)).clipped();
+        let flux = lobe.flattened(&local).flux();
+        filled += weight * flux.z * FRAC_1_PI;
+        whole += weight * lobe.above();
+        toward += frame.to_world(lobe.shape(flux).normalize_or_zero()) * (weight * flux.z);
+    }
+    let share = (filled / whole.max(1e-20)).clamp(0.0, 1.0);
+    let wi = above(toward);
+    let density: f32 = parts().map(|part| part.weight * part.lobe.density(part.frame.to_local(wi))).sum();
+    let ratio = (facet(wi).y * wi.z * whole / (albedo * density).max(1e-20)).clamp(0.0, RATIO_MAX);
     let left = (1.0 - share) * (1.0 - share);
     let cos_theta = wo.dot((wo + wi).normalize_or(Vec3::Z)).clamp(0.0, 1.0);
     Reflected { value: share * albedo * (1.0 + left * (ratio - 1.0)), cos_theta }
@@ -172,9 +188,8 @@ pub fn response(s: &Surface, wo: Vec3, base: &Shape, coat_wo: Vec3, coat: &Shape
         let spreading = Surface { multiple_scattering: s.multiple_scattering && reflections, ..*s };
         value = Spread::new(&spreading, wo).eval(&spreading, wi) * flux.z.max(0.0);
         if reflections {
-            let lobe = Cosines::new(wo, s.alpha, s.masking);
             let facet = |wi| s.lobe.facet(wo, wi, s.alpha, s.masking);
-            let glossy = reflected(&lobe, wo, &polygon, layered::lobe_albedo(s, wo), facet);
+            let glossy = reflected(wo, s.alpha, s.masking, &polygon, layered::lobe_albedo(s, wo), facet);
             value += glossy.value * layered::reflectance(s, glossy.cos_theta);
         }
     }
@@ -189,8 +204,7 @@ pub fn response(s: &Surface, wo: Vec3, base: &Shape, coat_wo: Vec3, coat: &Shape
     if polygon.is_empty() || !reflections {
         return value;
     }
-    let lobe = Cosines::new(coat_wo, widths, s.masking);
     let facet = |wi| ggx::microfacet(coat_wo, wi, widths, s.masking);
-    let over = reflected(&lobe, coat_wo, &polygon, 1.0 - albedo::loss(coat_wo, widths, s.masking), facet);
+    let over = reflected(coat_wo, widths, s.masking, &polygon, 1.0 - albedo::loss(coat_wo, widths, s.masking), facet);
     value + s.coat * over.value * schlick(Vec3::splat(coat::F0), 1.0, over.cos_theta)
 }

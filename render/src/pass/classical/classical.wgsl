@@ -22,10 +22,11 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let first = textureLoad(words0, pixel, 0);
     if first.x == 0u {
+        let origin = background_origin(position.xy);
         let direction = background_direction(position.xy);
-        var value = lamps_seen(eye(position.xy), direction, 2.0 * FAR);
+        var value = lamps_seen(origin, direction, 2.0 * FAR);
         if shows(CONTRIBUTION_ENVIRONMENT) {
-            value += background_seen(eye(position.xy), direction);
+            value += background_seen(origin, direction);
         }
         return vec4f(min(value, vec3f(frame_max)), 1.0);
     }
@@ -34,13 +35,13 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     );
     let world = unproject(position.xy, textureLoad(depth, pixel, 0));
     let point = world.xyz / world.w;
-    let origin = eye(position.xy);
+    let origin = background_origin(position.xy);
     let before = lamps_seen(origin, background_direction(position.xy), distance(origin, point));
     return vec4f(min(shade(texel_unpack(packed), point, pixel) + before, vec3f(frame_max)), 1.0);
 }
 
 // Where the ray of a pixel starts.
-fn eye(pixel: vec2f) -> vec3f {
+fn background_origin(pixel: vec2f) -> vec3f {
     if view.viewer.w == 0.0 {
         let near = unproject(pixel, 1.0);
         return near.xyz / near.w;

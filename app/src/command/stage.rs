@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burnish_core::document::{Curves, Document};
+use burnish_core::document::{self, Curves, Document, LightingPreset};
 use burnish_core::material::preset::{self, FormChoice, Preset, PresetError};
 use burnish_core::material::{Material, Reflectance, finish};
 use burnish_core::scene::{Camera, Scene};
@@ -40,6 +40,9 @@ pub struct StageArgs {
     /// Anisotropy strength, 0 to 1, of the same materials
     #[arg(long, value_name = "A", value_parser = value::number(0.0, 1.0))]
     anisotropy: Option<f32>,
+    /// Lighting preset around the subject in the place of all lights: an id, see below, or a .json file
+    #[arg(long, value_name = "ID|FILE")]
+    lighting: Option<String>,
     /// Pixels of the picture [default: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = value::size)]
     size: Option<UVec2>,
@@ -82,6 +85,7 @@ impl StageArgs {
             coat: Vec::new(),
             roughness: None,
             anisotropy: None,
+            lighting: None,
             size: Some(size),
             camera: None,
         }
@@ -118,6 +122,7 @@ impl StageArgs {
         }
         let mut metals = BTreeMap::new();
         notices.extend(self.set_materials(&mut scene, choice, &mut metals)?);
+        self.set_lighting(&mut scene)?;
         let camera = self.camera(&scene, document.as_ref())?.unwrap_or(usual);
         Ok(Staged { scene, camera, size, notices, document, metals })
     }
@@ -162,6 +167,19 @@ impl StageArgs {
         Ok(notices)
     }
 
+    /// Lights the scene as `--lighting` says; the strength and turn of its environment act on the map that is there.
+    fn set_lighting(&self, scene: &mut Scene) -> Result<(), Failure> {
+        let Some(wanted) = &self.lighting else { return Ok(()) };
+        let preset = LightingPreset::find(wanted).map_err(|e| Failure::usage(format!("--lighting {wanted}: {e}")))?;
+        scene.lights = document::shining(&preset.lights_around(scene.subject_bounds()), &[]);
+        if let (Some(map), Some(entry)) = (&mut scene.environment, &preset.environment) {
+            let map = Arc::make_mut(map);
+            map.strength *= entry.strength.max(0.0) as f32;
+            map.rotation += entry.rotation_deg.to_radians() as f32;
+        }
+        Ok(())
+    }
+
     /// That of `--camera`.
     fn camera(&self, scene: &Scene, document: Option<&Document>) -> Result<Option<Camera>, Failure> {
         let pick = match &self.camera {
@@ -195,7 +213,8 @@ fn set_form(scene: &mut Scene, choice: FormChoice) {
 /// What `--finish` and `--coat` take, for help texts.
 pub fn help() -> String {
     let ids = |kind| finish::list(kind).map(|finish| finish.id.as_str()).collect::<Vec<_>>().join(", ");
-    format!("Finishes: {}\nCoats: {}\n", ids(finish::Kind::Finish), ids(finish::Kind::Coat))
+    let lightings = LightingPreset::library().iter().map(|preset| preset.id.as_str()).collect::<Vec<_>>().join(", ");
+    format!("Finishes: {}\nCoats: {}\nLightings: {lightings}\n", ids(finish::Kind::Finish), ids(finish::Kind::Coat))
 }
 
 /// Applies `--finish` or `--coat`; without a slot to `targets`.

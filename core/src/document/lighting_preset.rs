@@ -3,6 +3,7 @@
 //! A file in `presets/lighting` states lights for a subject that fills a sphere of radius 1 about the origin, its front toward
 //! +z. In a document they stand around its subject, larger or smaller with it, and give it the same illuminance.
 
+use std::path::Path;
 use std::sync::LazyLock;
 
 use glam::Vec3;
@@ -10,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{Document, EnvironmentEntry, LightEntry};
+use crate::file::read_bounded;
 use crate::material::preset::{ID_REMEDY, is_id};
 use crate::scene::photometry::Unit;
 use crate::scene::{Bounds, Scene};
@@ -50,6 +52,17 @@ pub struct LightingPreset {
 /// Why there is no preset. Its text names file, field and remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PresetError {
+    /// The file cannot be read.
+    #[error("{0}")]
+    File(String),
+    /// None of that name.
+    #[error("no such lighting; known: {known}; or the path of a .json file")]
+    Unknown {
+        /// What was asked for.
+        wanted: String,
+        /// Ids of the program.
+        known: String,
+    },
     /// It is not JSON, or a field is missing or of the wrong kind.
     #[error("{origin}: {reason}; write it as presets/README.md shows")]
     Json {
@@ -120,6 +133,29 @@ impl LightingPreset {
     /// Those that come with the program.
     pub fn library() -> &'static [LightingPreset] {
         &LIBRARY
+    }
+
+    /// One of the program by its id or name, without regard to case, else that of a file.
+    pub fn find(wanted: &str) -> Result<LightingPreset, PresetError> {
+        let lower = wanted.trim().to_lowercase();
+        let is_meant = |preset: &&LightingPreset| preset.id == lower || preset.name.to_lowercase() == lower;
+        if let Some(preset) = LIBRARY.iter().find(is_meant) {
+            return Ok(preset.clone());
+        }
+        if !lower.ends_with(".json") {
+            let known = LIBRARY.iter().map(|preset| preset.id.as_str()).collect::<Vec<_>>().join(", ");
+            return Err(PresetError::Unknown { wanted: wanted.into(), known });
+        }
+        LightingPreset::read(Path::new(wanted))
+    }
+
+    /// Reads and checks a file.
+    pub fn read(path: &Path) -> Result<LightingPreset, PresetError> {
+        let origin = path.display().to_string();
+        let bytes = read_bounded(path, MAX_BYTES as u64).map_err(|e| PresetError::File(e.to_string()))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|e| PresetError::Json { origin: origin.clone(), reason: e.to_string() })?;
+        LightingPreset::parse(&text, &origin)
     }
 
     /// Reads and checks the text of a file; `origin` (file or id) starts the message.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burnish_core::document::LightingPreset;
-use burnish_core::file::{read_bounded, write_atomic};
+use burnish_core::file::write_atomic;
 use burnish_core::material::params::Values;
 use burnish_core::param::ParamValue;
 use burnish_core::scene::Bounds;
@@ -108,7 +108,7 @@ impl PresetSection {
 
     fn import(&mut self, context: &mut Context<'_>, folder: Option<&Path>) {
         let path = typed_path(&self.path);
-        match read(&path) {
+        match LightingPreset::read(&path).map_err(|e| e.to_string()) {
             Ok(preset) => {
                 apply(context.session, &preset);
                 if let Some(folder) = folder {
@@ -156,19 +156,12 @@ fn list(folder: Option<&Path>, requests: &mut Requests) -> Vec<Item> {
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
     paths.sort();
     for path in paths.into_iter().take(MOST) {
-        match read(&path) {
+        match LightingPreset::read(&path).map_err(|e| e.to_string()) {
             Ok(preset) => items.push(item(preset, Some(path))),
             Err(fault) => requests.push(Request::Error(fault)),
         }
     }
     items
-}
-
-fn read(path: &Path) -> Result<LightingPreset, String> {
-    let fault = |reason: &dyn std::fmt::Display| format!("{}: {reason}; pick the file of a preset", path.display());
-    let bytes = read_bounded(path, 1 << 20).map_err(|e| e.to_string())?;
-    let text = String::from_utf8(bytes).map_err(|e| fault(&e))?;
-    LightingPreset::parse(&text, &path.display().to_string()).map_err(|e| e.to_string())
 }
 
 fn item(preset: LightingPreset, path: Option<PathBuf>) -> Item {

@@ -12,6 +12,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 use crate::layout::types::{
     CONTRIBUTION_ALL, CONTRIBUTION_EMISSION, CONTRIBUTION_ENVIRONMENT, CONTRIBUTION_LIGHT, ViewData,
 };
+use crate::pass::classical::Variant;
 use crate::pass::gbuffer::GBuffer;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
@@ -38,6 +39,10 @@ impl Targets {
         }
     }
 }
+
+/// Lookups of a soft shadow in a frame: for what blocks, and for the share that is lit.
+const SOFT_SEARCHED: u32 = 12;
+const SOFT_FILTERED: u32 = 16;
 
 /// One of the frames that are averaged.
 #[derive(Clone, Copy, Debug)]
@@ -92,14 +97,28 @@ impl Encoding {
         rows: Range<u32>,
     ) {
         let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights, &resident.background.group];
-        passes.classical.encode(encoder, &targets.frame, groups, self.samples, rows);
+        passes.classical.encode(
+            encoder,
+            &targets.frame,
+            groups,
+            Variant { sampled: self.samples > 0, areas: resident.shadows.has_areas },
+            rows,
+        );
     }
 
     /// Blended surfaces over them.
     pub fn blend(&self, passes: &Passes, encoder: &mut wgpu::CommandEncoder, resident: &Resident, targets: &Targets) {
         let groups = [&self.scene_group, &resident.lights];
         let depth = &targets.gbuffer.depth;
-        passes.forward.encode(encoder, &targets.frame, depth, &resident.on_gpu, groups, self.viewer);
+        passes.forward.encode(
+            encoder,
+            &targets.frame,
+            depth,
+            &resident.on_gpu,
+            groups,
+            self.viewer,
+            resident.shadows.has_areas,
+        );
     }
 
     /// All of it.
@@ -156,8 +175,8 @@ fn view_data(
         wide_alpha: maps.wide_alpha,
         contribution: contribution(settings.contribution),
         unlit_words: shadows.unlit_words,
-        pad0: 0,
-        pad1: 0,
+        soft_searched: SOFT_SEARCHED,
+        soft_filtered: SOFT_FILTERED,
     }
 }
 

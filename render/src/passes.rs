@@ -6,7 +6,7 @@ use burnish_core::surface::ggx::albedo::AlbedoTable;
 
 use crate::device::Gpu;
 use crate::pass::accumulate::AccumulatePass;
-use crate::pass::classical::{ClassicalPass, light_layout};
+use crate::pass::classical::{ClassicalPass, Variant, light_layout};
 use crate::pass::display::DisplayPass;
 use crate::pass::environment::{EnvironmentPass, background_layout};
 use crate::pass::forward::ForwardPass;
@@ -63,9 +63,9 @@ impl Passes {
         let passes = self.clone();
         let compile = move || {
             AlbedoTable::get();
-            passes.classical.pipeline(0);
+            passes.classical.pipeline(Variant { sampled: false, areas: false });
             passes.gbuffer.warm_up();
-            passes.classical.pipeline(1);
+            passes.classical.pipeline(Variant { sampled: true, areas: false });
         };
         // Where there is no thread to be had it is compiled when it is needed.
         let _ = std::thread::Builder::new().name("pipelines".into()).spawn(compile);

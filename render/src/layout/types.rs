@@ -155,8 +155,8 @@ shared! {
         wide_alpha: f32,
         contribution: u32,
         unlit_words: u32,
-        pad0: u32,
-        pad1: u32,
+        soft_searched: u32,
+        soft_filtered: u32,
     }
 }
 

@@ -63,8 +63,10 @@ struct ViewData {
     contribution: u32,
     // Words of a light in the list of the instances that it leaves out; 0 when all light everything.
     unlit_words: u32,
-    pad0: u32,
-    pad1: u32,
+    // Lookups of a soft shadow: for what blocks, and for the share that is lit. Not constants: some drivers would write
+    // each of them out.
+    soft_searched: u32,
+    soft_filtered: u32,
 }
 
 // What the eye sees behind everything.

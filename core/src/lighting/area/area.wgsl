@@ -319,9 +319,20 @@ fn area_filling(wo: vec3f, alpha: vec2f, masking: u32, polygon: ptr<function, Ar
     var filled = 0.0;
     var whole = 0.0;
     var toward = vec3f(0.0);
-    for (var i = 0u; i < count; i++) {
-        let part = area_part(i, wo, alpha, masking);
+    var wi = vec3f(0.0, 0.0, 1.0);
+    var density = 0.0;
+    // All parts twice, the density in the direction that the first time finds; one loop, since some drivers write out
+    // every call where it stands.
+    for (var i = 0u; i < 2u * count; i++) {
+        if i == count {
+            wi = area_above(toward);
+        }
+        let part = area_part(select(i - count, i, i < count), wo, alpha, masking);
         if part.weight <= 0.0 {
+            continue;
+        }
+        if i >= count {
+            density += part.weight * area_density(part.lobe, frame_to_local(part.frame, wi));
             continue;
         }
         let flux = area_filled(part.lobe, part.frame, polygon);
@@ -331,14 +342,6 @@ fn area_filling(wo: vec3f, alpha: vec2f, masking: u32, polygon: ptr<function, Ar
         let length2 = dot(shaped, shaped);
         if length2 > 1e-37 {
             toward += frame_to_world(part.frame, shaped * inverseSqrt(length2)) * (part.weight * flux.z);
-        }
-    }
-    let wi = area_above(toward);
-    var density = 0.0;
-    for (var i = 0u; i < count; i++) {
-        let part = area_part(i, wo, alpha, masking);
-        if part.weight > 0.0 {
-            density += part.weight * area_density(part.lobe, frame_to_local(part.frame, wi));
         }
     }
     let inside = max(whole, 1e-20);
@@ -366,38 +369,50 @@ fn area_response(
     s: Surface, wo: vec3f, base: AreaShape, coat_wo: vec3f, coat: AreaShape, reflections: bool,
 ) -> vec3f {
     var value = vec3f(0.0);
-    var polygon = area_polygon(base);
-    if polygon.count >= 3u {
+    // The base, then the coat; one loop, see area_filling.
+    for (var layer = 0u; layer < select(1u, 2u, s.coat > 0.0); layer++) {
+        let is_coat = layer == 1u;
+        var shape = base;
+        var viewer = wo;
+        var widths = s.alpha;
+        if is_coat {
+            shape = coat;
+            viewer = coat_wo;
+            widths = vec2f(s.coat_alpha);
+        }
+        var polygon = area_polygon(shape);
         let flux = area_flux(&polygon);
         let wi = area_above(flux);
-        var spread = vec3f(0.0);
-        if reflections {
-            spread = layered_spread(s, wo, wi);
-        } else if s.metallic < 1.0 {
-            spread = (1.0 - s.metallic) * layered_matte(s, wo, wi);
+        if is_coat {
+            value *= coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking)
+                * coat_transmission(wi, s.coat_alpha, s.coat, s.masking);
         }
-        value = spread * max(flux.z, 0.0);
-        if reflections {
-            let filled = area_filling(wo, s.alpha, s.masking, &polygon);
+        if polygon.count < 3u {
+            continue;
+        }
+        if !is_coat {
+            var spread = vec3f(0.0);
+            if reflections {
+                spread = layered_spread(s, wo, wi);
+            } else if s.metallic < 1.0 {
+                spread = (1.0 - s.metallic) * layered_matte(s, wo, wi);
+            }
+            value = spread * max(flux.z, 0.0);
+        }
+        if !reflections {
+            continue;
+        }
+        let filled = area_filling(viewer, widths, s.masking, &polygon);
+        let cos_theta = area_half_cosine(viewer, filled.wi);
+        if is_coat {
+            let facet = ggx_microfacet(coat_wo, filled.wi, widths, s.masking);
+            let over = area_reflected(filled, 1.0 - ggx_loss(coat_wo, widths, s.masking), facet);
+            value += s.coat * over * fresnel_schlick(vec3f(COAT_F0), 1.0, cos_theta).x;
+        } else {
             let facet = layered_facet(s, wo, filled.wi);
             let glossy = area_reflected(filled, layered_lobe_albedo(s, wo), facet);
-            value += glossy * layered_reflectance(s, area_half_cosine(wo, filled.wi));
+            value += glossy * layered_reflectance(s, cos_theta);
         }
     }
-    if s.coat <= 0.0 {
-        return value;
-    }
-    polygon = area_polygon(coat);
-    let wi = area_above(area_flux(&polygon));
-    value *= coat_transmission(coat_wo, s.coat_alpha, s.coat, s.masking)
-        * coat_transmission(wi, s.coat_alpha, s.coat, s.masking);
-    if polygon.count < 3u || !reflections {
-        return value;
-    }
-    let widths = vec2f(s.coat_alpha);
-    let filled = area_filling(coat_wo, widths, s.masking, &polygon);
-    let facet = ggx_microfacet(coat_wo, filled.wi, widths, s.masking);
-    let over = area_reflected(filled, 1.0 - ggx_loss(coat_wo, widths, s.masking), facet);
-    let cos_theta = area_half_cosine(coat_wo, filled.wi);
-    return value + s.coat * over * fresnel_schlick(vec3f(COAT_F0), 1.0, cos_theta).x;
+    return value;
 }

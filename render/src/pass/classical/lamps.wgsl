@@ -16,7 +16,7 @@ fn lamp_light(
     let reflections = (light.flags & LIGHT_REFLECTIONS) != 0u;
     let wo = classical_facing(frame_to_local(base, to_viewer));
     let coat_wo = classical_facing(frame_to_local(coat, to_viewer));
-    if light.kind >= LIGHT_RECTANGLE {
+    if areas && light.kind >= LIGHT_RECTANGLE {
         let shape = lamp_shape(light, position);
         if shape.kind == AREA_NOTHING {
             return vec3f(0.0);

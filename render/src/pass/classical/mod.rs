@@ -85,9 +85,17 @@ pub struct ClassicalPass {
     format: wgpu::TextureFormat,
     layouts: [wgpu::BindGroupLayout; 4],
     module: OnceLock<wgpu::ShaderModule>,
-    /// Looks lobes up once, whatever the view says; a software driver compiles it in a part of the time.
-    lookup: OnceLock<wgpu::RenderPipeline>,
-    sampled: OnceLock<wgpu::RenderPipeline>,
+    /// By their variants.
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 4],
+}
+
+/// What a picture needs of the shader. A software driver compiles less in a part of the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
+    /// Samples lobes, as often as the view says; else they are looked up once.
+    pub sampled: bool,
+    /// Sums lights with an area.
+    pub areas: bool,
 }
 
 impl ClassicalPass {
@@ -112,19 +120,17 @@ impl ClassicalPass {
             layouts: [scene_layout.clone(), layout.clone(), light_layout.clone(), background_layout.clone()],
             layout,
             module: OnceLock::new(),
-            lookup: OnceLock::new(),
-            sampled: OnceLock::new(),
+            pipelines: Default::default(),
         }
     }
 
-    /// The pipeline for so many samples of a lobe. Blocks while it is compiled.
-    pub fn pipeline(&self, samples: u32) -> &wgpu::RenderPipeline {
-        let (cell, sampled) = if samples == 0 { (&self.lookup, 0.0) } else { (&self.sampled, 1.0) };
-        cell.get_or_init(|| {
+    /// The pipeline of a variant. Blocks while it is compiled.
+    pub fn pipeline(&self, Variant { sampled, areas }: Variant) -> &wgpu::RenderPipeline {
+        self.pipelines[usize::from(sampled) + 2 * usize::from(areas)].get_or_init(|| {
             let module = self.module.get_or_init(|| shader::CLASSICAL.module(&self.device));
             let layouts = self.layouts.each_ref().map(Some);
             let mut constants = frame_constants(self.format);
-            constants.push(("sampled", sampled));
+            constants.extend([("sampled", f64::from(u8::from(sampled))), ("areas", f64::from(u8::from(areas)))]);
             fullscreen_pipeline(&self.device, "classical", &layouts, module, self.format, &constants)
         })
     }
@@ -150,7 +156,7 @@ impl ClassicalPass {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         groups: [&wgpu::BindGroup; 4],
-        samples: u32,
+        variant: Variant,
         rows: std::ops::Range<u32>,
     ) {
         let whole = rows.start == 0 && rows.end == target.texture().height();
@@ -159,7 +165,7 @@ impl ClassicalPass {
             color_attachments: &[if whole { cleared(target) } else { attachment(target, wgpu::LoadOp::Load) }],
             ..Default::default()
         });
-        pass.set_pipeline(self.pipeline(samples));
+        pass.set_pipeline(self.pipeline(variant));
         pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
         for (index, group) in groups.into_iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);

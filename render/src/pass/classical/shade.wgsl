@@ -92,6 +92,9 @@ fn surface_of(t: Texel, m: MaterialData) -> Surface {
 // Largest radiance that a frame holds, where the device blends half floats only.
 override frame_max: f32 = 3.0e38;
 
+// Without it lights with an area are none, and the code that sums them is left out: software drivers compile it for long.
+override areas: bool = true;
+
 // Without it lobes are looked up once, and the code that samples them is left out.
 override sampled: bool = true;
 

@@ -3,8 +3,6 @@
 // A depth in the map is a point of the world. It is in the way where it lies above the plane of the surface (so nothing
 // shadows itself where it bends away) and where the ray to it goes on to the light.
 
-const SOFT_SEARCHED: u32 = 12u;
-const SOFT_FILTERED: u32 = 16u;
 
 // Half the light's axes as a point sees them: across the line to it.
 struct SoftLight {
@@ -96,9 +94,9 @@ fn soft_visibility(light: LightData, position: vec3f, normal: vec3f, rotation: v
     // How far a surface in the way is: for a sun in metres from the point, else as a share of the way from the light.
     var sum = 0.0;
     var found = 0.0;
-    for (var i = 0u; i < SOFT_SEARCHED; i++) {
+    for (var i = 0u; i < view.soft_searched; i++) {
         let place = soft_place(i, rotation, seen.round);
-        let step = (f32(i) + fract(rotation.x + rotation.y)) / f32(SOFT_SEARCHED);
+        let step = (f32(i) + fract(rotation.x + rotation.y)) / f32(view.soft_searched);
         // From the point outward; squares look closer where most is.
         var spread = mix(0.02, 0.5, step * step) * light.shadow_depth;
         if !sun {
@@ -133,8 +131,8 @@ fn soft_visibility(light: LightData, position: vec3f, normal: vec3f, rotation: v
     let spread = select((1.0 - reach) / reach, reach, sun);
     var lit = 0.0;
     var count = 0.0;
-    for (var i = 0u; i < SOFT_FILTERED; i++) {
-        let place = soft_place(i + SOFT_SEARCHED, rotation, seen.round);
+    for (var i = 0u; i < view.soft_filtered; i++) {
+        let place = soft_place(i + view.soft_searched, rotation, seen.round);
         let on_light = seen.a * place.x + seen.b * place.y;
         if dot(on_light - seen.toward, normal) <= 0.0 {
             continue;

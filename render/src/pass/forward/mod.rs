@@ -12,6 +12,8 @@ use crate::shader;
 /// Pipelines, one for each [`crate::scene::Variant`].
 pub struct ForwardPass {
     pipelines: MeshPipelines,
+    /// With lights that have an area.
+    with_areas: MeshPipelines,
 }
 
 impl ForwardPass {
@@ -22,14 +24,16 @@ impl ForwardPass {
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::COLOR,
         };
-        let kind = MeshKind {
+        let constants = |areas: f64| [frame_constants(format), vec![("areas", areas)]].concat();
+        let kind = |areas: f64| MeshKind {
             shader: &shader::FORWARD,
             depth: depth_state(false),
-            targets: Some(vec![Some(target)]),
-            constants: frame_constants(format),
+            targets: Some(vec![Some(target.clone())]),
+            constants: constants(areas),
             both_sides: false,
         };
-        ForwardPass { pipelines: MeshPipelines::new(&gpu.device, layouts, kind) }
+        let [pipelines, with_areas] = [0.0, 1.0].map(|areas| MeshPipelines::new(&gpu.device, layouts, kind(areas)));
+        ForwardPass { pipelines, with_areas }
     }
 
     /// Draws the blended instances sorted by the distance of their centres from the viewer (homogeneous, see
@@ -42,6 +46,7 @@ impl ForwardPass {
         scene: &GpuScene,
         groups: [&wgpu::BindGroup; 2],
         viewer: Vec4,
+        areas: bool,
     ) {
         let mut draws: Vec<&Draw> = scene.draws.iter().filter(|d| d.blended).collect();
         if draws.is_empty() {
@@ -61,11 +66,12 @@ impl ForwardPass {
             }),
             ..Default::default()
         });
+        let pipelines = if areas { &self.with_areas } else { &self.pipelines };
         let [scene_group, light_group] = groups;
         scene.bind(&mut pass, scene_group);
         pass.set_bind_group(2, light_group, &[]);
         for draw in draws {
-            pass.set_pipeline(self.pipelines.get(draw.variant));
+            pass.set_pipeline(pipelines.get(draw.variant));
             scene.draw(&mut pass, draw);
         }
     }

@@ -40,6 +40,8 @@ pub struct Shadows {
     /// A bit for each light and instance that it leaves out, `unlit_words` words a light; none where all are lit.
     pub(crate) unlit: wgpu::Buffer,
     pub(crate) unlit_words: u32,
+    /// Lights have an area.
+    pub(crate) has_areas: bool,
     pub(crate) clip_from_world: wgpu::Buffer,
     pub(crate) maps: wgpu::TextureView,
     /// Lights that got no map because there are too many.
@@ -109,6 +111,7 @@ impl ShadowPass {
         let storage = wgpu::BufferUsages::STORAGE;
         let lights = gpu.buffer("lights", bytemuck::cast_slice(&data), storage);
         let (words, unlit_words) = lights::unlit(scene);
+        let has_areas = scene.lights.iter().any(|light| !light.kind.is_sharp());
         let unlit = gpu.buffer("unlit", bytemuck::cast_slice(&words), storage);
         let casters = casters::list(scene);
         if let Some(before) = before.filter(|before| before.matrices == matrices && before.casters == casters) {
@@ -117,6 +120,7 @@ impl ShadowPass {
                 light_count,
                 unlit,
                 unlit_words,
+                has_areas,
                 unshadowed,
                 matrices,
                 casters,
@@ -134,6 +138,7 @@ impl ShadowPass {
             light_count,
             unlit,
             unlit_words,
+            has_areas,
             unshadowed,
             clip_from_world: gpu.buffer("shadow matrices", bytemuck::cast_slice(stored), storage),
             maps: maps.create_view(&wgpu::TextureViewDescriptor {

@@ -116,8 +116,7 @@ impl Encoding {
             depth,
             &resident.on_gpu,
             groups,
-            self.viewer,
-            resident.shadows.has_areas,
+            (self.viewer, resident.shadows.has_areas),
         );
     }
 

@@ -37,7 +37,7 @@ impl ForwardPass {
     }
 
     /// Draws the blended instances sorted by the distance of their centres from the viewer (homogeneous, see
-    /// `ViewData`). Nothing is encoded when there is none.
+    /// `ViewData`); `areas` where lights have one. Nothing is encoded when there is none.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -45,8 +45,7 @@ impl ForwardPass {
         depth: &wgpu::TextureView,
         scene: &GpuScene,
         groups: [&wgpu::BindGroup; 2],
-        viewer: Vec4,
-        areas: bool,
+        (viewer, areas): (Vec4, bool),
     ) {
         let mut draws: Vec<&Draw> = scene.draws.iter().filter(|d| d.blended).collect();
         if draws.is_empty() {

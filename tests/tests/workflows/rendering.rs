@@ -19,6 +19,15 @@ pub fn grey_environment(folder: &Path) -> PathBuf {
     file
 }
 
+/// A grey sky with a sun in one texel, a million times as bright.
+fn field_with_a_sun(folder: &Path) {
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n".to_vec();
+    let sun = bytes.len() + 4 * (20 * 128 + 40);
+    bytes.extend([128, 128, 128, 129].repeat(64 * 128));
+    bytes[sun + 3] += 20;
+    fs::write(folder.join("field.hdr"), bytes).expect("a writable folder");
+}
+
 /// Renders with few frames at a small size; `more` arguments come last.
 pub fn render(out: &Path, more: &[&str]) -> Outcome {
     burnish(&[&["render", "--size", "96x64", "--spp-jitter", "2", "--out", text(out)], more].concat())
@@ -110,6 +119,7 @@ pub fn readme_examples_run() {
     fs::write(folder.join("gold.csv"), "nm,n,k\n400,1.47,1.95\n500,0.97,1.87\n600,0.25,3.07\n700,0.13,4.06\n")
         .expect("a writable folder");
     let environment = grey_environment(&folder);
+    field_with_a_sun(&folder);
     let readme = fs::read_to_string(repository().join("README.md")).expect("the README");
     let examples: Vec<&str> = readme.lines().filter_map(|line| line.strip_prefix("    ./dev run ")).collect();
     let mut run = 0;

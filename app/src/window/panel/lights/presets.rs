@@ -193,10 +193,9 @@ fn tile_ui(ui: &mut egui::Ui, item: &Item, ball: Option<TextureId>) -> bool {
         }
         None => _ = ui.painter().circle_filled(middle, 0.46 * BALL, ui.visuals().faint_bg_color),
     }
-    let label =
-        egui::Label::new(egui::RichText::new(name).small()).truncate().selectable(false).halign(egui::Align::Center);
-    let line = egui::Rect::from_min_max(pos2(rect.left() + 2.0, place.bottom() + 1.0), rect.max);
-    ui.put(line, label);
+    let line = pos2(rect.center().x, place.bottom() + 9.0);
+    let font = egui::FontId::proportional(11.0);
+    ui.painter_at(rect).text(line, egui::Align2::CENTER_CENTER, name, font, ui.visuals().text_color());
     let own = item.path.as_ref().map(|path| format!("\n{}", path.display())).unwrap_or_default();
     response.on_hover_text(format!("{}{own}", item.preset.note)).clicked()
 }

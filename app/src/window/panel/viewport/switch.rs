@@ -90,20 +90,32 @@ pub fn tools_ui(ui: &mut egui::Ui, rect: Rect, tool: Tool, requests: &mut Reques
         let command = Command::Tool(other);
         Choice { label: other.title(), on: other == tool, hover: other.help(), command }
     });
-    row_ui(ui, (rect, Align2::LEFT_TOP), 380.0, &choices, requests)
+    // A column: beside the switch there is no room in a narrow window.
+    let size = vec2(74.0, choices.len() as f32 * (HEIGHT - 3.0));
+    let place = Align2::LEFT_TOP.align_size_within_rect(size, rect.shrink(8.0));
+    let layout = Layout::top_down_justified(Align::Center);
+    buttons_ui(ui, place, layout, &choices, requests);
+    place.bottom()
 }
 
 /// A row of buttons in a corner; returns where it ends below.
 fn row_ui(ui: &mut egui::Ui, (rect, corner): (Rect, Align2), width: f32, choices: &[Choice], to: &mut Requests) -> f32 {
     let size = vec2(width.min(rect.width() - 16.0), HEIGHT);
     let place = corner.align_size_within_rect(size, rect.shrink(8.0));
-    ui.painter().rect_filled(place, 4.0, overlay::SHADE);
     let layout = Layout::left_to_right(Align::Center).with_main_justify(false);
+    buttons_ui(ui, place, layout, choices, to);
+    place.bottom()
+}
+
+/// The buttons of a place over the picture.
+fn buttons_ui(ui: &mut egui::Ui, place: Rect, layout: Layout, choices: &[Choice], to: &mut Requests) {
+    ui.painter().rect_filled(place, 4.0, overlay::SHADE);
     let mut row = ui.new_child(UiBuilder::new().max_rect(place.shrink(2.0)).layout(layout));
     row.set_clip_rect(place.intersect(ui.clip_rect()));
     // Over a picture, whatever the theme.
     *row.visuals_mut() = Visuals::dark();
-    row.spacing_mut().item_spacing.x = 2.0;
+    row.spacing_mut().item_spacing = vec2(2.0, 1.0);
+    row.spacing_mut().interact_size.y = HEIGHT - 4.0;
     for Choice { label, on, hover, command } in choices {
         let button = Button::selectable(*on, RichText::new(*label).size(12.5));
         let response = row.add(button).on_hover_text(*hover);
@@ -112,5 +124,4 @@ fn row_ui(ui: &mut egui::Ui, (rect, corner): (Rect, Align2), width: f32, choices
             to.push(Request::Command(*command));
         }
     }
-    place.bottom()
 }

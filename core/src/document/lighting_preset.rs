@@ -28,9 +28,9 @@ const MAX_BYTES: usize = 1 << 20;
 /// Lights around a subject. Fields that this version does not know are kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightingPreset {
-    /// Always [`FORMAT`].
+    /// Always `burnish-lighting`.
     pub format: String,
-    /// Of the format, [`VERSION`].
+    /// Of the format, 1.
     pub version: u32,
     /// Unique name such as `three-point`: letters, digits, `.`, `-`, `_`.
     pub id: String,

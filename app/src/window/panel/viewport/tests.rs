@@ -239,7 +239,7 @@ fn drag_handle(bench: &mut Harness<Bench>, name: &str, by: Vec2) {
 }
 
 #[test]
-fn handles_move_and_scale_an_object_in_one_step_each_and_leave_the_camera() {
+fn handles_move_turn_and_scale_an_object_in_one_step_each_and_leave_the_camera() {
     let mut bench = bench();
     // The ball, which is in the middle of the picture.
     let place = 0;
@@ -249,6 +249,7 @@ fn handles_move_and_scale_an_object_in_one_step_each_and_leave_the_camera() {
     let before = document(&bench);
     for (tool, handle, by) in [
         (Tool::Move, format!("Move {name} along y"), vec2(0.0, -40.0)),
+        (Tool::Rotate, format!("Turn {name}"), vec2(0.0, -40.0)),
         (Tool::Scale, format!("Scale {name}"), vec2(60.0, 0.0)),
     ] {
         bench.state_mut().panel.tools.tool = tool;
@@ -261,7 +262,7 @@ fn handles_move_and_scale_an_object_in_one_step_each_and_leave_the_camera() {
     let put = document(&bench).transform(&key);
     assert!(put.by[1] > 0.0 && put.by[0] == 0.0 && put.by[2] == 0.0, "{put:?}");
     assert!(put.scale[0] > 1.3 && put.scale[0] == put.scale[2], "{put:?}");
-    for _ in 0..2 {
+    for _ in 0..3 {
         bench.state_mut().session.undo();
     }
     assert_eq!(document(&bench), before);

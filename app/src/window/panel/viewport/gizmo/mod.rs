@@ -3,6 +3,8 @@
 mod drag;
 mod sight;
 
+use std::f32::consts::TAU;
+
 use eframe::egui::{
     self, Color32, CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Stroke, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -16,6 +18,8 @@ use drag::{Drag, Handle};
 
 /// Length of an axis and radius of a ring, points.
 const REACH: f32 = 70.0;
+/// Radius of the ring in the plane of the screen.
+const OUTER: f32 = 86.0;
 /// Edge of the squares that take hold of a handle.
 const GRIP: f32 = 16.0;
 /// Squares along an axis.
@@ -106,7 +110,7 @@ fn shapes(sight: &Sight, mode: Mode, at: Vec3) -> Option<Vec<Shape>> {
                 let eye = sight.toward_eye(at);
                 let ring: Vec<Vec3> = (0..=AROUND)
                     .map(|i| {
-                        let (sin, cos) = (std::f32::consts::TAU * i as f32 / AROUND as f32).sin_cos();
+                        let (sin, cos) = (TAU * i as f32 / AROUND as f32).sin_cos();
                         reach * (cos * u + sin * v)
                     })
                     .collect();
@@ -129,7 +133,13 @@ fn shapes(sight: &Sight, mode: Mode, at: Vec3) -> Option<Vec<Shape>> {
         };
         shapes.push(Shape { handle, points, grips, color });
     }
-    shapes.push(Shape { handle: Handle::Center, points: vec![center], grips: vec![center], color: MIDDLE });
+    // A turn in the plane of the screen has a ring around the others: in the middle a pointer has no direction.
+    let points = match mode {
+        Mode::Rotate => (0..=AROUND).map(|i| center + OUTER * Vec2::angled(TAU * i as f32 / AROUND as f32)).collect(),
+        Mode::Move | Mode::Scale => vec![center],
+    };
+    let grips = points.iter().copied().take(AROUND).collect();
+    shapes.push(Shape { handle: Handle::Center, points, grips, color: MIDDLE });
     Some(shapes)
 }
 
@@ -164,7 +174,7 @@ fn draw(ui: &egui::Ui, rect: Rect, shape: &Shape, mode: Mode, bright: bool) {
     let painter = ui.painter_at(rect);
     let color = if bright { Color32::WHITE } else { shape.color };
     let Some(&last) = shape.points.last() else { return };
-    if shape.handle == Handle::Center {
+    if shape.points.len() == 1 {
         painter.circle(last, 6.0, SHADE, Stroke::new(2.0, color));
         return;
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::document::{LightEntry, Shape};
-use burnish_core::scene::{Bounds, Scene};
+use burnish_core::scene::Scene;
 use glam::Vec3;
 
 use super::session::Session;
@@ -39,14 +39,9 @@ pub fn entry(session: &Session, name: &str) -> Option<LightEntry> {
     session.document().light(&model(session), name)
 }
 
-/// The box of what the picture is about.
-pub fn subject(session: &Session) -> Bounds {
-    session.scene().subject_bounds()
-}
-
 /// Its radius in metres.
 pub fn radius(session: &Session) -> f64 {
-    let radius = f64::from(subject(session).radius());
+    let radius = f64::from(session.subject_bounds().radius());
     if radius > 0.0 && radius.is_finite() { radius } else { 1.0 }
 }
 
@@ -80,7 +75,7 @@ pub fn select(session: &mut Session, name: &str, add: bool) {
 /// Does an act as one step.
 pub fn act(session: &mut Session, act: LightAct) {
     session.seal();
-    let (model, bounds) = (model(session), subject(session));
+    let (model, bounds) = (model(session), session.subject_bounds());
     let chosen = session.selection.lights.clone();
     let target = chosen.join(", ");
     let center: Vec3 = bounds.center();
@@ -129,7 +124,7 @@ mod tests {
         assert_eq!(entries(&session).len(), before.len() + 1);
         let placed = entry(&session, &name).unwrap();
         act(&mut session, LightAct::Mirror(0));
-        let center = subject(&session).center();
+        let center = session.subject_bounds().center();
         assert!((entry(&session, &name).unwrap().place().x + placed.place().x - 2.0 * center.x).abs() < 1e-4);
         act(&mut session, LightAct::Duplicate);
         assert_ne!(session.selection.lights[0], name);

@@ -2,13 +2,14 @@
 //!
 //! Panels read it and edit it through [`Session::edit`]; nothing here draws or starts work.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{Curves, Document, History, MaterialEntry, Missing, Opened, Resolved, Sources, resolve};
 use burnish_core::lighting::Layers;
-use burnish_core::scene::Scene;
+use burnish_core::scene::{Bounds, Scene};
 
 /// What the next command is about.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +29,8 @@ pub struct Session {
     curves: Curves,
     resolved: Resolved,
     layers: Layers,
+    /// Box of what the picture is about, measured when someone asks.
+    subject_bounds: OnceCell<Bounds>,
     /// Where the document is saved; `None` before the first time.
     pub path: Option<PathBuf>,
     saved: Arc<Document>,
@@ -62,6 +65,7 @@ impl Session {
             curves,
             resolved,
             layers,
+            subject_bounds: OnceCell::new(),
             path,
             saved,
             selection: Selection::default(),
@@ -92,6 +96,11 @@ impl Session {
     /// What lights the scene.
     pub fn layers(&self) -> &Layers {
         &self.layers
+    }
+
+    /// Box of what the picture is about. Measured once for a scene: that visits every vertex.
+    pub fn subject_bounds(&self) -> Bounds {
+        *self.subject_bounds.get_or_init(|| self.scene().subject_bounds())
     }
 
     /// The files of the document.
@@ -239,6 +248,7 @@ impl Session {
         self.revision += 1;
         self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
         self.layers = self.history.current().lighting.layers(&self.resolved.object_keys);
+        self.subject_bounds.take();
         let known = |missing: &Missing| self.unread.iter().find(|m| m.path == missing.path && m.kind == missing.kind);
         self.missing = self.resolved.missing.iter().map(|missing| known(missing).unwrap_or(missing).clone()).collect();
         let materials = self.document().materials.len();

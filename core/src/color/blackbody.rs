@@ -41,6 +41,17 @@ mod tests {
     }
 
     #[test]
+    fn colours_of_black_bodies_have_luminance_1_and_daylight_is_nearly_white() {
+        for kelvin in [-1.0, 1000.0, 2700.0, 6504.0, 40_000.0, f64::NAN] {
+            assert!((luminance(blackbody(kelvin)) - 1.0).abs() < 1e-5);
+        }
+        let day = blackbody(6504.0);
+        assert!((day - Vec3::ONE).abs().max_element() < 0.06, "{day}");
+        let warm = blackbody(2700.0);
+        assert!(warm.x > 1.5 && warm.z < 0.3, "{warm}");
+    }
+
+    #[test]
     fn luminance_is_one_and_warm_is_red() {
         let mut last = f32::INFINITY;
         for kelvin in [f64::NAN, -5.0, 1000.0, 1500.0, 2700.0, 5000.0, 6500.0, 12_000.0, 1e9] {

@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{is_default, one};
+use crate::color::blackbody::blackbody;
 use crate::scene::Environment;
-use crate::scene::environment::{Shape, SkyModel, SoftBox, Studio, kelvin_color};
+use crate::scene::environment::{Shape, SkyModel, SoftBox, Studio};
 
 /// The environment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -281,7 +282,7 @@ impl SoftBoxEntry {
     /// The box as it is painted.
     pub fn shape(&self) -> SoftBox {
         let radians = |degrees: f64| degrees.to_radians() as f32;
-        let color = self.kelvin.map_or(vec3(self.color), kelvin_color);
+        let color = self.kelvin.map_or(vec3(self.color), blackbody);
         SoftBox {
             azimuth: radians(self.azimuth_deg),
             elevation: radians(self.elevation_deg),

@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 
 use super::{Document, EnvironmentEntry, LightEntry};
 use crate::file::read_bounded;
-use crate::material::preset::{ID_REMEDY, is_id};
+use crate::material::preset::Header;
 use crate::scene::photometry::Unit;
 use crate::scene::{Bounds, Scene};
 
@@ -180,17 +180,15 @@ impl LightingPreset {
         let fault = |field: &str, reason: String, remedy| {
             Err(PresetError::Field { origin: origin.into(), field: field.into(), reason, remedy })
         };
-        if self.format != FORMAT {
-            return fault("format", format!("is `{}`", self.format), "set it to `burnish-lighting`");
-        }
-        if self.version != VERSION {
-            return fault("version", format!("is {}", self.version), "this program reads version 1");
-        }
-        if !is_id(&self.id) {
-            return fault("id", format!("is `{}`", self.id), ID_REMEDY);
-        }
-        if self.name.trim().is_empty() {
-            return fault("name", "is empty".into(), "name the preset");
+        let header = Header {
+            format: (&self.format, FORMAT),
+            version: (self.version, VERSION),
+            id: &self.id,
+            name: &self.name,
+            remedies: ["set it to `burnish-lighting`", "name the preset"],
+        };
+        if let Some((field, reason, remedy)) = header.fault() {
+            return fault(field, reason, remedy);
         }
         if self.lights.len() > MOST {
             return fault("lights", format!("has {}", self.lights.len()), "leave at most 64");

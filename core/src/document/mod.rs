@@ -19,6 +19,7 @@ mod maps;
 mod open;
 mod paths;
 mod resolve;
+mod shape;
 mod snapshot;
 mod transform;
 
@@ -42,7 +43,7 @@ pub use environment::{BackgroundEntry, EnvironmentEntry, GroundEntry, MadeEntry,
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};
 pub use keys::{material_keys, object_keys};
-pub use light::{LightEntry, Shape};
+pub use light::LightEntry;
 pub use lighting_preset::{LightingPreset, PresetError};
 pub use lights::{entries_of, shining};
 pub use open::{
@@ -50,8 +51,9 @@ pub use open::{
 };
 pub use paths::{absolute, relative};
 pub use resolve::{Curves, Resolved, resolve};
+pub use shape::Shape;
 pub use snapshot::{CompareEntry, Side, SideEntry, Snapshot};
-pub use transform::{TransformEntry, center_of};
+pub use transform::TransformEntry;
 
 /// Scene of a new document.
 pub const DEFAULT_SCENE: &str = "gallery:workbench";

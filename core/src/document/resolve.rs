@@ -6,8 +6,8 @@ use std::sync::{Arc, LazyLock};
 
 use super::maps::Maps;
 use super::{
-    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, center_of, material_keys, object_keys,
-    placeholder, role_key, shining,
+    Document, MaterialEntry, Missing, MissingKind, Sources, TextureChoice, material_keys, object_keys, placeholder,
+    role_key, shining,
 };
 use crate::color::tone::ToneMap;
 use crate::lighting::classical;
@@ -290,7 +290,7 @@ fn place_objects(
         if let Some(entry) = objects.get(key.as_str()) {
             instance.visible = !entry.hidden;
             if let Some(transform) = &entry.transform {
-                let center = center_of(instance, &meshes[instance.mesh]);
+                let center = instance.bounds(&meshes[instance.mesh]).center();
                 instance.world_from_local = transform.place(instance.world_from_local, center);
             }
             if let Some(name) = &entry.name {

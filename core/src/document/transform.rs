@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{Document, is_default};
-use crate::scene::{Bounds, Instance, Mesh};
 
 /// Least factor of a scale: an object without extent cannot be lit.
 const SCALE_MIN: f64 = 1e-4;
@@ -77,12 +76,6 @@ fn bounded(value: f64, min: f64, max: f64, otherwise: f64) -> f64 {
     if value.is_finite() { value.clamp(min, max) } else { otherwise }
 }
 
-/// Middle of the box of an instance in the world.
-pub fn center_of(instance: &Instance, mesh: &Mesh) -> Vec3 {
-    let place = |p: &Vec3| instance.world_from_local.transform_point3(*p);
-    mesh.positions.iter().map(place).fold(Bounds::EMPTY, Bounds::including).center()
-}
-
 impl Document {
     /// Where the user put an object; that of the model where nothing is stored.
     pub fn transform(&self, key: &str) -> TransformEntry {
@@ -109,7 +102,7 @@ mod tests {
         let before = resolved(&document);
         let (key, first) = (before.object_keys[0].clone(), &before.scene.instances[0]);
         let mesh = &before.scene.meshes[first.mesh];
-        let center = center_of(first, mesh);
+        let center = first.bounds(mesh).center();
         let mut put = TransformEntry { by: [0.5, 0.0, -1.0], scale: [2.0, 1.0, 1.0], ..TransformEntry::default() };
         put.set_rotation(Quat::from_rotation_y(0.7) * Quat::from_rotation_x(0.2));
         document.set_transform(&key, put.clone());

@@ -168,17 +168,15 @@ impl Finish {
         let fault = |field: &str, reason: String, remedy| {
             Err(FinishError::Field { origin: origin.into(), field: field.into(), reason, remedy })
         };
-        if self.format != FORMAT {
-            return fault("format", format!("is `{}`", self.format), "set it to `burnish-finish`");
-        }
-        if self.version != VERSION {
-            return fault("version", format!("is {}", self.version), "this program reads version 1");
-        }
-        if !preset::is_id(&self.id) {
-            return fault("id", format!("is `{}`", self.id), preset::ID_REMEDY);
-        }
-        if self.name.trim().is_empty() {
-            return fault("name", "is empty".into(), "name the finish");
+        let header = preset::Header {
+            format: (&self.format, FORMAT),
+            version: (self.version, VERSION),
+            id: &self.id,
+            name: &self.name,
+            remedies: ["set it to `burnish-finish`", "name the finish"],
+        };
+        if let Some((field, reason, remedy)) = header.fault() {
+            return fault(field, reason, remedy);
         }
         for (key, json) in &self.values {
             if !self.kind.keys().contains(&key.as_str()) {

@@ -8,8 +8,8 @@ mod fits;
 mod library;
 mod text;
 
+pub(crate) use check::Header;
 pub use check::{FORMAT, REQUIRED_RANGE_NM, VERSION, reaches_required};
-pub(crate) use check::{ID_REMEDY, is_id};
 pub use fits::{Cheapest, Fit, Fits, FormChoice, SAMPLED_NM, Tolerance};
 pub(super) use library::hint;
 pub use library::{IDS, find, library};

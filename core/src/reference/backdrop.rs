@@ -120,7 +120,7 @@ impl Plane<'_> {
         let points = (0..n * n).map(|i| Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32);
         let drawn = points.filter_map(|u| shapes::sample(light, self.point, u));
         let sum: f32 = drawn.map(|drawn| drawn.direction.y.max(0.0) / drawn.pdf).filter(|v| v.is_finite()).sum();
-        shapes::radiance(light) * sum / (n * n) as f32
+        light.radiance() * sum / (n * n) as f32
     }
 
     /// Irradiance of the lamps that surfaces block, by one of them; its x and y are for the place on it.

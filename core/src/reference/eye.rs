@@ -15,7 +15,6 @@ use super::world::{Sight, World};
 use super::{PathSample, View};
 use crate::math::frame::Frame;
 use crate::math::sampling::{pcg, unit};
-use crate::scene::LightKind;
 use crate::surface::layered::Surface;
 use crate::trace::{Hit, Ray, offset};
 
@@ -158,21 +157,13 @@ impl SurfacePoint<'_> {
     /// Direct light of the lamps of all kinds, of one drawn by `random` and of those that a direction from the surface meets,
     /// with their shadows; and the rays that were cast.
     pub fn lamps(&self, random: [f32; 4]) -> (Vec3, u32) {
-        self.drawn_lamps(random, |_| true)
-    }
-
-    /// [`SurfacePoint::lamps`] of those that are not sharp: rectangles, spheres and suns with an angle.
-    pub fn wide_lamps(&self, random: [f32; 4]) -> (Vec3, u32) {
-        self.drawn_lamps(random, |kind| !kind.is_sharp())
-    }
-
-    fn drawn_lamps(&self, [x, y, z, w]: [f32; 4], wanted: impl Fn(LightKind) -> bool) -> (Vec3, u32) {
+        let [x, y, z, w] = random;
         let (world, receiver, bsdf) = (self.world, self.receiver(), self.bsdf());
         let scene = world.scene();
         let rates = Rates::of_lamps(scene, receiver);
         let (mut light, mut rays) = (Vec3::ZERO, 0);
         let drawn = world.lights().sample(scene, receiver, Kind::Lamps, &rates, Vec3::new(x, y, z));
-        if let Some(sample) = drawn.filter(|sample| sample.lamp(scene).is_some_and(|lamp| wanted(lamp.kind))) {
+        if let Some(sample) = drawn {
             let one = received(world, &bsdf, &sample) * sample.weight;
             if one != Vec3::ZERO {
                 let shadows = casts_shadows(world, &sample);
@@ -196,7 +187,7 @@ impl SurfacePoint<'_> {
         }
         rays += 1;
         let distance = world.closest(&ray, Sight::Light, self.salt).map_or(f32::INFINITY, |hit| hit.t);
-        for met in met.filter(|met| met.light.lights(receiver.instance as usize) && wanted(met.light.kind)) {
+        for met in met.filter(|met| met.light.lights(receiver.instance as usize)) {
             if !met.light.shadows || met.is_open(distance) {
                 let weight = balance(drawn.pdf, || Lights::lamp_pdf(&rates, receiver, &met, drawn.wi));
                 light += weight * drawn.weight * met.radiance;

@@ -72,7 +72,7 @@ fn guess(light: &Light, receiver: Receiver) -> f32 {
         return at(light, receiver.position).irradiance.element_sum();
     }
     let angle = shapes::solid_angle(light, receiver.position);
-    if angle > 0.0 { angle * shapes::radiance(light).element_sum() } else { 0.0 }
+    if angle > 0.0 { angle * light.radiance().element_sum() } else { 0.0 }
 }
 
 /// The sum of the guesses, by which lamps are chosen.
@@ -103,7 +103,7 @@ pub(super) fn sample(lights: &[Light], receiver: Receiver, total: f32, u: Vec3) 
     let drawn = shapes::sample(light, receiver.position, u.truncate())?;
     let pdf = chance * drawn.pdf;
     // A chance so small that the density vanishes is none.
-    let weight = shapes::radiance(light) / pdf;
+    let weight = light.radiance() / pdf;
     weight.is_finite().then_some(LampSample { lamp, direction: drawn.direction, distance: drawn.distance, weight, pdf })
 }
 

@@ -240,7 +240,7 @@ impl Lights {
     pub(super) fn met(scene: &Scene, origin: Vec3, direction: Vec3) -> impl Iterator<Item = Met<'_>> {
         scene.lights.iter().enumerate().filter_map(move |(lamp, light)| {
             let distance = shapes::meet(light, origin, direction)?;
-            let radiance = shapes::radiance(light);
+            let radiance = light.radiance();
             (radiance != Vec3::ZERO).then_some(Met { lamp, light, distance, radiance })
         })
     }

@@ -1,7 +1,7 @@
 //! Lights with a size, as a point sees them: drawn evenly by solid angle, so that only their edges and what they light
 //! make noise.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -22,18 +22,6 @@ pub(super) struct ShapeSample {
     pub distance: f32,
     /// Per steradian, finite.
     pub pdf: f32,
-}
-
-/// What the light sends along every ray that meets it; zero for a light without a size.
-pub(super) fn radiance(light: &Light) -> Vec3 {
-    match light.kind {
-        LightKind::Rectangle { .. } | LightKind::Sphere { .. } => light.intensity,
-        // The illuminance of a disc of even radiance: pi sin^2.
-        LightKind::Directional { angular_radius } if !light.kind.is_sharp() => {
-            light.intensity / (PI * angular_radius.sin().powi(2))
-        }
-        _ => Vec3::ZERO,
-    }
 }
 
 /// Steradians that the light fills at a point; zero where it shines away from there, or has no size.
@@ -232,6 +220,8 @@ impl Seen {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::PI;
+
     use super::*;
     use crate::math::sampling::Random;
     use crate::math::statistics::{SphereGrid, sidak, sphere_chi_square};

@@ -90,6 +90,20 @@ impl Light {
     }
 }
 
+impl Light {
+    /// Radiance along every ray that meets it, nit; zero for lights without a size. The illuminance of a sun is
+    /// `pi sin^2` times its radiance.
+    pub fn radiance(&self) -> Vec3 {
+        match self.kind {
+            LightKind::Rectangle { .. } | LightKind::Sphere { .. } => self.intensity,
+            LightKind::Directional { angular_radius } if !self.kind.is_sharp() => {
+                self.intensity / (std::f32::consts::PI * angular_radius.sin().powi(2))
+            }
+            _ => Vec3::ZERO,
+        }
+    }
+}
+
 impl LightKind {
     /// Parallel light from infinitely far away.
     pub const PARALLEL: LightKind = LightKind::Directional { angular_radius: 0.0 };

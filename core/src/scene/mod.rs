@@ -176,6 +176,11 @@ impl Bounds {
         Bounds { min: self.min.min(point), max: self.max.max(point) }
     }
 
+    /// The smallest box around both.
+    pub fn joined(self, other: Bounds) -> Bounds {
+        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     /// True when no point is inside.
     pub fn is_empty(self) -> bool {
         self.min.cmpgt(self.max).any()
@@ -192,26 +197,29 @@ impl Bounds {
     }
 }
 
+impl Instance {
+    /// Box around it in world space; `mesh` is its own. Visits every vertex.
+    pub fn bounds(&self, mesh: &Mesh) -> Bounds {
+        let place = |p: &Vec3| self.world_from_local.transform_point3(*p);
+        mesh.positions.iter().map(place).fold(Bounds::EMPTY, Bounds::including)
+    }
+}
+
 impl Scene {
     /// Box around all instances, hidden ones included, in world space.
     pub fn bounds(&self) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        for instance in &self.instances {
-            for &p in &self.meshes[instance.mesh].positions {
-                bounds = bounds.including(instance.world_from_local.transform_point3(p));
-            }
-        }
-        bounds
+        self.instances
+            .iter()
+            .fold(Bounds::EMPTY, |bounds, instance| bounds.joined(instance.bounds(&self.meshes[instance.mesh])))
     }
 
     /// Box around what a picture is about: the visible instances of the subject, of all where that has none.
     pub fn subject_bounds(&self) -> Bounds {
         let of = |index: usize| self.instances.get(index).filter(|instance| instance.visible);
         let around = |indices: &mut dyn Iterator<Item = usize>| {
-            indices.filter_map(of).fold(Bounds::EMPTY, |bounds, instance| {
-                let place = |p: &Vec3| instance.world_from_local.transform_point3(*p);
-                self.meshes[instance.mesh].positions.iter().map(place).fold(bounds, Bounds::including)
-            })
+            indices
+                .filter_map(of)
+                .fold(Bounds::EMPTY, |bounds, instance| bounds.joined(instance.bounds(&self.meshes[instance.mesh])))
         };
         let subject = around(&mut self.subject.iter().copied());
         if subject.is_empty() { around(&mut (0..self.instances.len())) } else { subject }

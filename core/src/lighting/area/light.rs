@@ -1,6 +1,6 @@
 //! Lights of a scene as shapes, and how much of one a point sees.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
@@ -15,17 +15,15 @@ pub const RAYS: u32 = 4;
 /// behind one and for sharp lights.
 pub fn shape(light: &Light, position: Vec3) -> Option<(Shape, Vec3)> {
     let toward = light.position - position;
-    match light.kind {
-        LightKind::Rectangle { across, size } => {
-            Some((Shape::rectangle(toward, light.direction, across, size)?, light.intensity))
-        }
-        LightKind::Sphere { radius } => Some((Shape::sphere(toward, radius)?, light.intensity)),
+    let shape = match light.kind {
+        LightKind::Rectangle { across, size } => Shape::rectangle(toward, light.direction, across, size),
+        LightKind::Sphere { radius } => Shape::sphere(toward, radius),
         LightKind::Directional { angular_radius } if !light.kind.is_sharp() => {
-            let sine = angular_radius.sin();
-            Some((Shape::Cap { axis: -light.direction, sine }, light.intensity / (PI * sine * sine)))
+            Some(Shape::Cap { axis: -light.direction, sine: angular_radius.sin() })
         }
         LightKind::Directional { .. } | LightKind::Point | LightKind::Spot { .. } => None,
-    }
+    };
+    Some((shape?, light.radiance()))
 }
 
 /// Share of a light above the plane of a surface that nothing hides, by [`RAYS`] rays; `sees` casts one in a direction

@@ -22,12 +22,39 @@ pub fn reaches_required(first: f64, last: f64) -> bool {
 }
 
 /// What a text must be to pass [`is_id`].
-pub(crate) const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
+const ID_REMEDY: &str = "use 1 to 64 letters, digits, `-`, `_` and inner `.`";
 
 /// True for what may name a file of `presets`.
-pub(crate) fn is_id(id: &str) -> bool {
+fn is_id(id: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
     !id.is_empty() && id.len() <= MAX_ID && !id.starts_with('.') && id.chars().all(allowed)
+}
+
+/// What the files of `presets` begin with.
+pub(crate) struct Header<'a> {
+    pub format: (&'a str, &'a str),
+    pub version: (u32, u32),
+    pub id: &'a str,
+    pub name: &'a str,
+    /// What to do about a wrong format, and about a name that is empty.
+    pub remedies: [&'static str; 2],
+}
+
+impl Header<'_> {
+    /// What is wrong: field, reason and remedy. `format` and `version` stand beside what they must be.
+    pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        let [set_format, give_name] = self.remedies;
+        if self.format.0 != self.format.1 {
+            return Some(("format", format!("is `{}`", self.format.0), set_format));
+        }
+        if self.version.0 != self.version.1 {
+            return Some(("version", format!("is {}", self.version.0), "this program reads version 1"));
+        }
+        if !is_id(self.id) {
+            return Some(("id", format!("is `{}`", self.id), ID_REMEDY));
+        }
+        self.name.trim().is_empty().then(|| ("name", "is empty".into(), give_name))
+    }
 }
 
 impl Preset {
@@ -35,17 +62,15 @@ impl Preset {
     pub fn check(&self, origin: &str) -> Result<(), PresetError> {
         let fault =
             |field, reason: String, remedy| Err(PresetError::Field { origin: origin.into(), field, reason, remedy });
-        if self.format != FORMAT {
-            return fault("format", format!("is `{}`", self.format), "set it to `burnish-metal`");
-        }
-        if self.version != VERSION {
-            return fault("version", format!("is {}", self.version), "this program reads version 1");
-        }
-        if !is_id(&self.id) {
-            return fault("id", format!("is `{}`", self.id), ID_REMEDY);
-        }
-        if self.name.trim().is_empty() {
-            return fault("name", "is empty".into(), "name the metal");
+        let header = Header {
+            format: (&self.format, FORMAT),
+            version: (self.version, VERSION),
+            id: &self.id,
+            name: &self.name,
+            remedies: ["set it to `burnish-metal`", "name the metal"],
+        };
+        if let Some((field, reason, remedy)) = header.fault() {
+            return fault(field, reason, remedy);
         }
         self.check_table(origin)
     }

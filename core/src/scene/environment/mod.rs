@@ -20,7 +20,7 @@ pub use blur::{BLUR_MAX_DEG, blurred};
 pub use ground::Ground;
 pub use sky::{SkyModel, TURBIDITY};
 pub use split::{NoSun, Split, Sun, split_sun};
-pub use studio::{Shape, SoftBox, Studio, WIDEST, kelvin_color};
+pub use studio::{Shape, SoftBox, Studio, WIDEST};
 
 /// The WGSL twins of what is here.
 pub const LEAVES: &[&Leaf] = &[&ground::LEAF];

@@ -1,12 +1,10 @@
 //! Studios by numbers: a backdrop of three colours with softboxes painted into it.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::direction;
-use crate::color::observer::{CMF, COUNT, wavelength_nm};
-use crate::color::rgb;
 use crate::scene::Environment;
 
 /// Widest softbox, radians (170 degrees): it is a flat sheet before the viewer.
@@ -164,16 +162,6 @@ impl Sheet {
     }
 }
 
-/// Colour of a black body, linear Rec.709 of luminance 1; what lies outside of the gamut is clamped at 0 before. 1000 to
-/// 40 000 K; other temperatures count as the nearest. Planck's law with the radiation constant 1.438 777e7 nm K (CODATA).
-pub fn kelvin_color(kelvin: f64) -> Vec3 {
-    let kelvin = if kelvin.is_finite() { kelvin.clamp(1000.0, 40_000.0) } else { 6504.0 };
-    let power = |nm: f64| nm.powi(-5) / (1.438_777e7 / (kelvin * nm)).exp_m1();
-    let xyz: DVec3 = (0..COUNT).map(|i| power(wavelength_nm(i)) * DVec3::from_array(CMF[i])).sum();
-    let color = (rgb::rgb_from_xyz() * (xyz / xyz.y)).max(DVec3::ZERO).as_vec3();
-    color / rgb::luminance(color)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,16 +241,5 @@ mod tests {
         }
         let wide = painted(SoftBox { size: Vec2::splat(9.0), ..square() });
         assert!(wide.texels.iter().all(|t| t.is_finite()));
-    }
-
-    #[test]
-    fn colours_of_black_bodies_have_luminance_1_and_daylight_is_nearly_white() {
-        for kelvin in [-1.0, 1000.0, 2700.0, 6504.0, 40_000.0, f64::NAN] {
-            assert!((rgb::luminance(kelvin_color(kelvin)) - 1.0).abs() < 1e-5);
-        }
-        let day = kelvin_color(6504.0);
-        assert!((day - Vec3::ONE).abs().max_element() < 0.06, "{day}");
-        let warm = kelvin_color(2700.0);
-        assert!(warm.x > 1.5 && warm.z < 0.3, "{warm}");
     }
 }

@@ -196,7 +196,7 @@ impl Editor<'_> {
             if let Some(picked) = choice_ui(ui, "Kind", &titles, chosen, controls, Some(&name), hover)
                 && picked != chosen
             {
-                let distance = f64::from(self.place().distance(lights::subject(self.session).center()));
+                let distance = f64::from(self.place().distance(self.session.subject_bounds().center()));
                 self.set("Kind of light", |light| light.set_shape(shapes[picked], distance));
                 self.session.seal();
             }

@@ -4,34 +4,26 @@ use burnish_core::document::{LightEntry, Shape};
 use eframe::egui::{self, RichText, Role, WidgetInfo};
 
 use crate::window::lights::{self, LightAct};
-use crate::window::panel::Context;
 use crate::window::session::Session;
 use crate::window::widget::name_widget;
 
-/// The list.
-#[derive(Default)]
-pub struct LightList {}
-
-impl LightList {
-    /// Shows it.
-    pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
-        let session = &mut *context.session;
-        buttons_ui(ui, session);
-        let all = lights::entries(session);
-        if all.is_empty() {
-            ui.weak("No lights: only the environment and what glows shine.");
-        }
-        let mut group = String::new();
-        // Lights of a group stand together, in the order of the groups' first lights.
-        for (place, light) in in_groups(&all) {
-            if light.group != group {
-                group.clone_from(&light.group);
-                if !group.is_empty() {
-                    group_ui(ui, session, &group, &all);
-                }
+/// Shows the list.
+pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
+    buttons_ui(ui, session);
+    let all = lights::entries(session);
+    if all.is_empty() {
+        ui.weak("No lights: only the environment and what glows shine.");
+    }
+    let mut group = String::new();
+    // Lights of a group stand together, in the order of the groups' first lights.
+    for (place, light) in in_groups(&all) {
+        if light.group != group {
+            group.clone_from(&light.group);
+            if !group.is_empty() {
+                group_ui(ui, session, &group, &all);
             }
-            ui.push_id(place, |ui| light_ui(ui, session, light));
         }
+        ui.push_id(place, |ui| light_ui(ui, session, light));
     }
 }
 

@@ -12,14 +12,13 @@ use super::row::section;
 /// The lights panel.
 #[derive(Default)]
 pub struct LightsPanel {
-    list: list::LightList,
     presets: presets::PresetSection,
 }
 
 impl LightsPanel {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
-        section(ui, "Lights", |ui| self.list.ui(ui, context));
+        section(ui, "Lights", |ui| list::ui(ui, context.session));
         if let Some(name) = context.session.selection.lights.first().cloned() {
             section(ui, "Light", |ui| light::ui(ui, context.session, &name));
         }

@@ -135,13 +135,13 @@ impl PresetSection {
 
 /// The lights of the session as a preset of a name.
 fn of_session(session: &Session, name: &str) -> LightingPreset {
-    let (model, subject) = (lights::model(session), lights::subject(session));
+    let (model, subject) = (lights::model(session), session.subject_bounds());
     LightingPreset::of_document(name, session.document(), &model, subject)
 }
 
 /// Lights the subject by a preset, as one step.
 fn apply(session: &mut Session, preset: &LightingPreset) {
-    let subject = lights::subject(session);
+    let subject = session.subject_bounds();
     session.seal();
     session.edit("Lighting preset", &preset.name, |document| document.apply_lighting(preset, subject));
     session.seal();

@@ -1,6 +1,9 @@
 //! What the left button does in the picture: handles on what is selected, and lights that are put by their effect.
 
-use burnish_core::document::{LightEntry, Shape, TransformEntry, center_of};
+use std::sync::Arc;
+
+use burnish_core::document::{LightEntry, Shape, TransformEntry};
+use burnish_core::scene::Scene;
 use eframe::egui::{self, Pos2, Vec2};
 use glam::{Quat, Vec3};
 
@@ -90,6 +93,7 @@ pub struct Tools {
     pub tool: Tool,
     gizmo: Gizmo,
     held: Held,
+    middle: Option<Middle>,
 }
 
 /// What is dragged, as it was before.
@@ -106,7 +110,7 @@ impl Tools {
     pub fn ui(&mut self, ui: &mut egui::Ui, sight: &Sight, context: &mut Context<'_>) {
         lamps::ui(ui, sight, context.session);
         let Some(mode) = self.tool.mode() else { return };
-        let Some((at, name)) = selected_place(context.session) else { return };
+        let Some((at, name)) = self.selected_place(context.session) else { return };
         let moved = self.gizmo.ui(ui, sight, mode, at, &name);
         if moved.began {
             self.held = Held::of(context.session);
@@ -128,7 +132,7 @@ impl Tools {
         let Some(name) = session.selection.lights.first().cloned() else {
             return Err("Select a light first, in the Lights panel or by its mark in the picture.");
         };
-        let center = lights::subject(session).center();
+        let center = session.subject_bounds().center();
         if self.tool == Tool::Orbit {
             let (yaw, pitch) = (f64::from(by.x) * ORBIT_DEG, f64::from(-by.y) * ORBIT_DEG);
             lights::set(session, "Orbit light", &name, |light| light.orbit(center, yaw, pitch));
@@ -150,19 +154,45 @@ impl Tools {
     }
 }
 
-/// Where the handles stand, and what they hold in words. A selected light comes before objects.
-fn selected_place(session: &Session) -> Option<(Vec3, String)> {
-    if let Some(name) = session.selection.lights.first() {
-        return Some((lights::entry(session, name)?.place(), name.clone()));
+/// Selected objects of a scene with their middle, which is measured once: that visits every vertex.
+struct Middle {
+    scene: Arc<Scene>,
+    objects: Vec<String>,
+    at: Vec3,
+    name: String,
+}
+
+impl Middle {
+    /// `None` where no object is selected.
+    fn of(session: &Session) -> Option<Middle> {
+        let (scene, objects) = (session.scene().clone(), session.selection.objects.clone());
+        let keys = session.resolved().object_keys.iter().zip(&scene.instances);
+        let chosen: Vec<_> = keys.filter(|(key, _)| objects.contains(key)).map(|(_, instance)| instance).collect();
+        let centers =
+            chosen.iter().filter_map(|instance| Some(instance.bounds(scene.meshes.get(instance.mesh)?).center()));
+        let centers: Vec<Vec3> = centers.collect();
+        let at = centers.iter().sum::<Vec3>() / centers.len().max(1) as f32;
+        let first = chosen.first()?.name.clone();
+        let name = if centers.len() == 1 { first } else { format!("{} objects", centers.len()) };
+        Some(Middle { scene: scene.clone(), objects, at, name })
     }
-    let scene = session.scene();
-    let keys = session.resolved().object_keys.iter().zip(&scene.instances);
-    let chosen = keys.filter(|(key, _)| session.selection.objects.contains(key)).map(|(_, instance)| instance);
-    let centers: Vec<Vec3> =
-        chosen.clone().filter_map(|instance| Some(center_of(instance, scene.meshes.get(instance.mesh)?))).collect();
-    let at = centers.iter().sum::<Vec3>() / centers.len().max(1) as f32;
-    let name = chosen.map(|instance| instance.name.as_str()).next()?;
-    Some((at, if centers.len() == 1 { name.into() } else { format!("{} objects", centers.len()) }))
+
+    fn is_of(&self, session: &Session) -> bool {
+        Arc::ptr_eq(&self.scene, session.scene()) && self.objects == session.selection.objects
+    }
+}
+
+impl Tools {
+    /// Where the handles stand, and what they hold in words. A selected light comes before objects.
+    fn selected_place(&mut self, session: &Session) -> Option<(Vec3, String)> {
+        if let Some(name) = session.selection.lights.first() {
+            return Some((lights::entry(session, name)?.place(), name.clone()));
+        }
+        if self.middle.as_ref().is_none_or(|middle| !middle.is_of(session)) {
+            self.middle = Middle::of(session);
+        }
+        self.middle.as_ref().map(|middle| (middle.at, middle.name.clone()))
+    }
 }
 
 impl Held {

@@ -51,6 +51,7 @@ fn main() -> Result<(), Failure> {
         tone: ToneMap::Neutral,
         exposure_ev: 0.0,
         mode: Default::default(),
+        contribution: Default::default(),
         moving: true,
     };
     report("first picture", &viewport.draw(&frame)?);

@@ -25,6 +25,7 @@ pub mod viewport;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};
 pub use error::RenderError;
+pub use pass::display::Display;
 pub use passes::Passes;
 pub use plate::Plate;
 pub use renderer::{Renderer, View};

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use burnish_core::color::tone::ToneMap;
-use burnish_core::measure::view::DisplayMode;
 use burnish_core::picture::Picture;
 use glam::UVec2;
 
@@ -31,12 +29,7 @@ impl Plate {
     }
 
     /// Shows a picture; only what differs from the last call is done anew.
-    pub fn draw(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Result<(), RenderError> {
-        self.draw_as(picture, Display { tone, exposure_ev, mode: DisplayMode::Picture })
-    }
-
-    /// The same in any mode of the display.
-    pub fn draw_as(&mut self, picture: &Arc<Picture>, display: Display) -> Result<(), RenderError> {
+    pub fn draw(&mut self, picture: &Arc<Picture>, display: Display) -> Result<(), RenderError> {
         let passes = self.passes.clone();
         let gpu = &passes.gpu;
         gpu.check()?;

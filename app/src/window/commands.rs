@@ -1,6 +1,7 @@
 //! The table of commands: menus, shortcuts, the palette and the shortcut page are made from it.
 
 use burnish_core::document::Side;
+use burnish_core::measure::view::DisplayMode;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::compare::CompareView;
@@ -22,6 +23,8 @@ pub enum Command {
     SaveAs,
     /// Writes the picture.
     SaveImage,
+    /// Writes the environment.
+    SaveEnvironment,
     /// Ends the program.
     Quit,
     /// Takes back the last edit.
@@ -66,6 +69,8 @@ pub enum Command {
     SaveCamera,
     /// The reference instead of the live picture.
     Reference,
+    /// Another way to show the picture, or the picture again.
+    Display(DisplayMode),
     /// Two pictures, or one again.
     Compare(CompareView),
     /// Keeps the document as a side of the comparison.
@@ -195,6 +200,13 @@ pub const TABLE: &[Entry] = &[
     entry(Menu::File, Command::Save, "Save", ctrl(Key::S), "Save the document."),
     entry(Menu::File, Command::SaveAs, "Save as...", ctrl_shift(Key::S), "Save the document under another name."),
     entry(Menu::File, Command::SaveImage, "Save image...", ctrl(Key::E), "Write the picture as PNG or EXR, any size."),
+    entry(
+        Menu::File,
+        Command::SaveEnvironment,
+        "Save environment...",
+        None,
+        "Write the environment as HDR or EXR, with strength and tint, not turned.",
+    ),
     entry(Menu::File, Command::Quit, "Quit", ctrl(Key::Q), "End the program."),
     entry(Menu::Edit, Command::Undo, "Undo", ctrl(Key::Z), "Take back the last edit."),
     entry(Menu::Edit, Command::Redo, "Redo", ctrl_shift(Key::Z), "Do the last undone edit again."),
@@ -285,6 +297,20 @@ pub const TABLE: &[Entry] = &[
         key(Key::R),
         "Show the path-traced reference instead of the live picture; it refines while nothing changes.",
     ),
+    entry(
+        Menu::View,
+        Command::Display(DisplayMode::FalseColor),
+        "False colour",
+        key(Key::U),
+        "Show stops of luminance about middle grey as colours, before the tone map.",
+    ),
+    entry(
+        Menu::View,
+        Command::Display(DisplayMode::Clipping),
+        "Clipping marks",
+        key(Key::J),
+        "Mark where channels are at an end of what the screen shows.",
+    ),
     panel(Pane::Viewport, "Viewport panel", "Show the picture or put it away."),
     panel(Pane::Scene, "Scene panel", "Show the objects or put them away."),
     panel(Pane::Material, "Material panel", "Show the material's factors or put them away."),
@@ -294,6 +320,7 @@ pub const TABLE: &[Entry] = &[
     panel(Pane::Compare, "Compare panel", "Show snapshots and what differs between A and B or put them away."),
     panel(Pane::Chart, "Chart panel", "Show time against error of lighting methods or put it away."),
     panel(Pane::Reflectance, "Reflectance panel", "Show the plot of reflectance or put it away."),
+    panel(Pane::Scope, "Scope panel", "Show histogram, waveform and aids of exposure or put them away."),
     panel(Pane::History, "History panel", "Show the list of steps or put it away."),
     entry(Menu::View, Command::ResetLayout, "Reset layout", None, "Put all panels where they were at first."),
     entry(Menu::View, Command::ScaleUp, "Larger interface", ctrl(Key::Plus), "Enlarge text and widgets."),

@@ -19,7 +19,7 @@ pub fn initial() -> Tree<Pane> {
     let picture = tabs(&[Pane::Viewport]);
     let (material, plot) = (
         tabs(&[Pane::Material, Pane::Lights, Pane::Environment, Pane::Compare, Pane::Chart]),
-        tabs(&[Pane::Reflectance]),
+        tabs(&[Pane::Reflectance, Pane::Scope]),
     );
     let mut column = |upper, lower, share: f32| {
         let mut linear = Linear::new(LinearDir::Vertical, vec![upper, lower]);

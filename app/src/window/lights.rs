@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use burnish_core::document::{LightEntry, Shape};
+use burnish_core::document::{LightEntry, LightingPreset, Shape};
 use burnish_core::scene::Scene;
 use glam::Vec3;
 
@@ -100,6 +100,20 @@ pub fn act(session: &mut Session, act: LightAct) {
         LightAct::Aim => each(session, "Aim light", &chosen, |light| light.aim(center)),
     }
     session.seal();
+}
+
+/// The lights of the session as a preset of a name.
+pub fn preset(session: &Session, name: &str) -> LightingPreset {
+    LightingPreset::of_document(name, session.document(), &model(session), session.subject_bounds())
+}
+
+/// Lights the subject by a preset, as one step.
+pub fn apply(session: &mut Session, preset: &LightingPreset) {
+    let subject = session.subject_bounds();
+    session.seal();
+    session.edit("Lighting preset", &preset.name, |document| document.apply_lighting(preset, subject));
+    session.seal();
+    session.selection.lights.clear();
 }
 
 fn each(session: &mut Session, label: &str, names: &[String], change: impl Fn(&mut LightEntry)) {

@@ -4,6 +4,7 @@
 //! and `burnish snapshot --ui` draw it offscreen. Panels are in `panel/`, one file each; they edit the document through
 //! [`Session::edit`] and ask for the rest by [`Request`]s. The picture comes from [`Stage`].
 
+mod aids;
 mod chart;
 mod commands;
 mod compare;
@@ -22,6 +23,7 @@ mod preparations;
 mod reference;
 mod rename;
 mod request;
+mod scope;
 mod session;
 mod shortcuts;
 mod snapshots;
@@ -31,10 +33,12 @@ mod table_import;
 mod theme;
 mod thumbnails;
 mod toasts;
+mod user_lightings;
 mod user_presets;
 mod widget;
 mod workbench;
 
+pub use aids::{Aids, Source};
 pub use chart::{Chart, ErrorMeasure};
 pub use commands::{Command, Entry, Menu, TABLE};
 pub use compare::{Compare, CompareView, Legend};

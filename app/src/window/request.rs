@@ -70,6 +70,10 @@ pub enum Purpose {
     },
     /// A metal preset.
     Preset,
+    /// A lighting preset to light the subject by.
+    ImportLighting,
+    /// The lights as a preset.
+    ExportLighting,
     /// What is missing under this kind, by its place in the session's list.
     Missing {
         /// What it is.

@@ -7,6 +7,13 @@ use super::preferences::Preferences;
 /// Scales of text and widgets that can be chosen.
 pub const SCALES: std::ops::RangeInclusive<f32> = 0.5..=3.0;
 
+/// R, G and B in plots with the colours of Okabe and Ito, told apart without red and green as well.
+pub const CHANNELS: [(&str, Color32); 3] = [
+    ("R", Color32::from_rgb(0xd5, 0x5e, 0x00)),
+    ("G", Color32::from_rgb(0x00, 0x9e, 0x73)),
+    ("B", Color32::from_rgb(0x2f, 0x8f, 0xd0)),
+];
+
 /// Sets both themes once; `Ctrl` `+`, `-` and `0` are commands here and not egui's own.
 pub fn install(ctx: &egui::Context) {
     ctx.options_mut(|options| options.zoom_with_keyboard = false);

@@ -92,11 +92,6 @@ impl UserPresets {
         UserPresets { folder, waiting, ..UserPresets::default() }
     }
 
-    /// Where they are kept; `None` for a user without a home.
-    pub fn folder(&self) -> Option<&Path> {
-        self.folder.as_deref()
-    }
-
     /// What is in the folder.
     pub fn listing(&self) -> &Arc<Listing> {
         &self.listing
@@ -243,7 +238,7 @@ fn materials_folder(folder: &Path) -> PathBuf {
 }
 
 /// The `.json` files of a folder, sorted; none where it cannot be listed.
-fn files(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
@@ -347,7 +342,7 @@ fn save(material: &SavedMaterial, folder: &Path) -> Result<(SavedMaterial, Strin
 }
 
 /// A file for a name that does not exist yet.
-fn new_file(name: &str, folder: &Path) -> PathBuf {
+pub(super) fn new_file(name: &str, folder: &Path) -> PathBuf {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let stem: String = name.chars().map(plain).take(40).collect();
     let names = (1u64..).map(|number| match number {
@@ -391,7 +386,7 @@ fn inside(path: &Path, folder: &Path) -> Result<(), String> {
     }
 }
 
-fn make(folder: &Path) -> Result<(), String> {
+pub(super) fn make(folder: &Path) -> Result<(), String> {
     fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made ({e})", folder.display()))
 }
 

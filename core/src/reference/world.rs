@@ -8,7 +8,7 @@ use super::lights::Lights;
 use super::point::Triangle;
 use super::sampler::PathSampler;
 use super::waves::{MetalWaves, Waves};
-use super::{Options, PathSample, View, is_spectral, path};
+use super::{Contribution, Options, PathSample, View, is_spectral, path};
 use crate::material::preset::Preset;
 use crate::material::{AlphaMode, Material, Reflectance};
 use crate::math::frame::Frame;
@@ -80,6 +80,12 @@ impl World {
             None => World::new(scene, options),
         };
         if is_spectral(settings) { world.by_wavelength(metal) } else { (world, Vec::new()) }
+    }
+
+    /// The same that shows the light of these sources only.
+    #[must_use]
+    pub fn showing(self, contribution: Contribution) -> World {
+        World { options: Options { contribution, ..self.options }, ..self }
     }
 
     fn of_parts(scene: &Arc<Scene>, options: Options, accel: Accel, lights: Lights) -> World {

@@ -46,8 +46,17 @@ pub struct Frame {
     pub exposure_ev: f32,
     /// The picture, or what judges its exposure.
     pub mode: DisplayMode,
+    /// Whose light is shown.
+    pub contribution: Contribution,
     /// Something is being dragged: quick frames only.
     pub moving: bool,
+}
+
+impl Frame {
+    /// How the picture is shown.
+    pub fn display(&self) -> Display {
+        Display { tone: self.tone, exposure_ev: self.exposure_ev, mode: self.mode }
+    }
 }
 
 /// What was shown.
@@ -107,7 +116,6 @@ pub struct Viewport {
     shown: Shown,
     /// The scene changed since the last frame.
     stale: bool,
-    contribution: Contribution,
     /// The finer cubes of the resident's environment, and the share that is done.
     preparing: Option<(Refinement, f32)>,
     last: Option<(Key, Camera)>,
@@ -131,7 +139,6 @@ impl Viewport {
             full: None,
             shown: Shown::Nothing,
             stale: false,
-            contribution: Contribution::All,
             preparing: None,
             last: None,
             display: None,
@@ -147,11 +154,6 @@ impl Viewport {
     pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
         let masking = self.resident.as_ref().map_or(Masking::Correlated, |resident| resident.masking);
         self.load(scene, masking)
-    }
-
-    /// Shows the light of one source from the next frame on, or all of it.
-    pub fn set_contribution(&mut self, contribution: Contribution) {
-        self.contribution = contribution;
     }
 
     fn load(&mut self, scene: &Arc<Scene>, masking: Masking) -> Result<(), RenderError> {
@@ -176,7 +178,7 @@ impl Viewport {
         let gpu = &passes.gpu;
         gpu.check()?;
         check_size(gpu, frame.size)?;
-        let settings = FrameSettings { contribution: self.contribution, ..FrameSettings::new(&frame.settings) };
+        let settings = FrameSettings { contribution: frame.contribution, ..FrameSettings::new(&frame.settings) };
         let Some(resident) = &self.resident else {
             return Ok(Drawn { settled: true, ..Drawn::default() });
         };
@@ -202,7 +204,7 @@ impl Viewport {
         if !gpu.is_software() {
             self.prepare(&passes)?;
         }
-        let display = Display { tone: frame.tone, exposure_ev: frame.exposure_ev, mode: frame.mode };
+        let display = frame.display();
         if changed || before != (self.shown, self.frames()) || self.display != Some(display) {
             self.show(&passes, display);
             self.display = Some(display);

@@ -28,7 +28,16 @@ fn setup() -> (Offscreen, Arc<Scene>, Frame) {
     let scene = document::resolve(&opened.document, &opened.sources, &mut Curves::default()).scene;
     let camera = scene.cameras.first().expect("a camera").clone();
     let (settings, tone) = (Settings::new(PARAMS), ToneMap::default());
-    let frame = Frame { size, camera, settings, tone, exposure_ev: 0.0, mode: Default::default(), moving: true };
+    let frame = Frame {
+        size,
+        camera,
+        settings,
+        tone,
+        exposure_ev: 0.0,
+        mode: Default::default(),
+        contribution: Default::default(),
+        moving: true,
+    };
     (offscreen, scene, frame)
 }
 

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use burnish_core::color::tone::{ToneMap, exposure_factor, tone_map};
 use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::picture::Picture;
-use burnish_render::pass::display::Display;
 use burnish_render::readback::read_texture;
-use burnish_render::{Gpu, Passes, Plate, RenderError};
+use burnish_render::{Display, Gpu, Passes, Plate, RenderError};
 use burnish_tests::{Need, trial};
 use glam::Vec4;
 use libtest_mimic::Trial;
@@ -36,6 +35,10 @@ fn assert_shows(gpu: &Gpu, plate: &Plate, picture: &Picture, (tone, exposure_ev)
     }
 }
 
+fn plain((tone, exposure_ev): (ToneMap, f32)) -> Display {
+    Display { tone, exposure_ev, mode: DisplayMode::Picture }
+}
+
 fn shown() {
     let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
     let mut plate = Plate::new(&Arc::new(Passes::new(&gpu)));
@@ -46,18 +49,18 @@ fn shown() {
     for (picture, display) in
         [(&first, neutral), (&first, bright), (&second, bright), (&other, bright), (&other, bright), (&first, neutral)]
     {
-        plate.draw(picture, display.0, display.1).unwrap_or_else(|e| panic!("{e}"));
+        plate.draw(picture, plain(display)).unwrap_or_else(|e| panic!("{e}"));
         assert_shows(&gpu, &plate, picture, display);
     }
     for mode in DisplayMode::ALL {
         let display = Display { tone: ToneMap::None, exposure_ev: 1.0, mode };
-        plate.draw_as(&second, display).unwrap_or_else(|e| panic!("{e}"));
+        plate.draw(&second, display).unwrap_or_else(|e| panic!("{e}"));
         let displayed = displayed(&second, mode, ToneMap::None, 1.0);
         // Light of the screen, as another picture.
         assert_shows(&gpu, &plate, &displayed, (ToneMap::None, 0.0));
     }
-    let empty = plate.draw(&Arc::new(Picture::default()), ToneMap::Neutral, 0.0);
+    let empty = plate.draw(&Arc::new(Picture::default()), plain(neutral));
     assert!(matches!(empty, Err(RenderError::Size { .. })), "{empty:?}");
     gpu.device.destroy();
-    assert!(matches!(plate.draw(&second, ToneMap::Neutral, 0.0), Err(RenderError::Gpu(_))));
+    assert!(matches!(plate.draw(&second, plain(neutral)), Err(RenderError::Gpu(_))));
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use burnish_core::color::tone::{ToneMap, exposure_factor, tone_map};
 use burnish_core::lighting::classical::PARAMS;
 use burnish_core::material::{AlphaMode, Material, Reflectance, preset};
+use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
+use burnish_core::reference::Contribution;
 use burnish_core::scene::gallery::shape;
 use burnish_core::scene::{Environment, Image, LightKind, Scene, Texels};
 use burnish_core::surface::fresnel::Form;
@@ -27,6 +29,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         trial("after any change the viewport settles on what the renderer draws", gpu, changes),
         trial("every display transform of the viewport is the one of the file", gpu, transforms),
+        trial("false colours, marks and the light of one source are those of the renderer", gpu, aids),
         trial("an edit shows in the next frame, a moving view is never settled", gpu, next_frame),
         trial("a pick finds what is seen, a readout what is summed", gpu, pick_and_radiance),
         trial("a hidden instance is not seen and casts no shadow", gpu, hidden),
@@ -94,7 +97,16 @@ impl Bench {
 fn frame(scene: &Scene) -> Frame {
     let settings = Settings::new(PARAMS);
     let camera = scene.cameras[0].clone();
-    Frame { size: SIZE, camera, settings, tone: TONE, exposure_ev: EXPOSURE, mode: Default::default(), moving: false }
+    Frame {
+        size: SIZE,
+        camera,
+        settings,
+        tone: TONE,
+        exposure_ev: EXPOSURE,
+        mode: Default::default(),
+        contribution: Default::default(),
+        moving: false,
+    }
 }
 
 fn reference(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Picture {
@@ -233,6 +245,43 @@ fn transforms() {
         frame.tone = tone;
         assert!(bench.draw(&frame).settled, "a display transform draws nothing anew");
         bench.assert_shows(&picture, tone, tone.id());
+    }
+}
+
+fn aids() {
+    let mut bench = Bench::new();
+    let scene = Arc::new(base());
+    bench.set(&scene);
+    let picture = reference(&bench.passes, &scene);
+    let mut frame = frame(&scene);
+    bench.settle(&frame);
+    for mode in [DisplayMode::FalseColor, DisplayMode::Clipping] {
+        frame.mode = mode;
+        assert!(bench.draw(&frame).settled, "a mode of the display draws nothing anew");
+        // Bands end at a luminance: the other order of the sum may put a texel into the next.
+        let wanted = displayed(&picture, mode, TONE, EXPOSURE);
+        let output = bench.viewport.output().expect("a picture").texture();
+        let bytes = read_texture(&bench.gpu, output, 0, 0).unwrap_or_else(|e| panic!("{e}"));
+        let pairs = bytes.as_chunks::<4>().0.iter().zip(&wanted.texels);
+        let other = pairs.filter(|(shown, texel)| {
+            let encoded = burnish_core::color::rgb::srgb_from_linear(texel.truncate()).to_array();
+            shown.iter().zip(encoded).any(|(shown, wanted)| (f32::from(*shown) - 255.0 * wanted).abs() > 1.5)
+        });
+        let other = other.count();
+        assert!(other * 500 <= wanted.texels.len(), "{}: {other} pixels differ", mode.id());
+    }
+    frame.mode = DisplayMode::Picture;
+    for contribution in Contribution::each(scene.lights.len()) {
+        frame.contribution = contribution;
+        assert!(!bench.draw(&frame).settled, "{contribution:?} is another picture");
+        bench.settle(&frame);
+        let mut renderer = Renderer::with_passes(&bench.passes, &scene).unwrap_or_else(|e| panic!("{e}"));
+        renderer.show(contribution);
+        let camera = scene.cameras[0].clone();
+        let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: FRAMES };
+        let wanted = renderer.render(&view).unwrap_or_else(|e| panic!("{e}"));
+        assert_ne!(wanted.texels, picture.texels);
+        bench.assert_shows(&wanted, TONE, &format!("{contribution:?}"));
     }
 }
 

@@ -141,19 +141,29 @@ fn presets() {
     }
 
     let file = bench.folder.join("shared.json");
-    bench.window.get_by_role_and_label(Role::TextInput, "Lighting preset file").focus();
-    bench.window.run_steps(1);
-    bench.window.get_by_role_and_label(Role::TextInput, "Lighting preset file").type_text(&file.to_string_lossy());
-    bench.window.run_steps(2);
-    bench.click("Export lighting preset");
+    bench.click("Export...");
+    bench.enter_path(&file);
+    bench.until("it is written", |workbench| !workbench.is_busy());
     assert!(file.exists());
     bench.click("Light by Rim");
-    bench.click("Import lighting preset");
+    let import = |bench: &mut Bench| {
+        bench.click("Import lighting preset...");
+        bench.enter_path(&file);
+        bench.until("it is read", |workbench| !workbench.is_busy());
+    };
+    import(&mut bench);
     assert_eq!(lights(&bench).len(), three.len());
     bench.until_shown("Light by shared");
     std::fs::write(&file, "{ \"format\": \"burnish-lighting\" }").expect("a writable folder");
-    bench.click("Import lighting preset");
+    import(&mut bench);
     let told: Vec<String> = bench.workbench().messages().map(str::to_string).collect();
     assert!(told.iter().any(|text| text.contains("shared.json")), "{told:?}");
     assert_eq!(lights(&bench).len(), three.len(), "nothing is lost");
+
+    bench.window.get_by_label("Light by Mine").click_secondary();
+    bench.window.run_steps(3);
+    bench.click("Delete lighting preset");
+    bench.until("it is deleted", |workbench| !workbench.is_busy());
+    assert!(bench.window.query_by_label("Light by Mine").is_none());
+    bench.until_shown("Light by shared");
 }

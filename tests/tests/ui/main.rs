@@ -6,6 +6,7 @@
 mod bench;
 mod chart;
 mod compare;
+mod environment;
 mod import;
 mod lights;
 mod looks;
@@ -20,6 +21,7 @@ fn main() {
     let trials = [
         workflow::trials(),
         import::trials(),
+        environment::trials(),
         lights::trials(),
         looks::trials(),
         compare::trials(),

@@ -40,12 +40,18 @@ pub enum Ask {
     Texture { material: usize, role: TextureRole },
     /// A metal.
     Preset,
+    /// A lighting preset.
+    ImportLighting,
+    /// Where to write the lights as a preset.
+    ExportLighting,
     /// Where a missing file is now.
     Relink(Missing),
     /// Where to save the document, and what comes then.
     SaveAs(Option<Next>),
     /// Where to write the picture, and how.
     SaveImage(ImageSettings),
+    /// Where to write the environment.
+    SaveEnvironment,
 }
 
 impl Ask {
@@ -55,9 +61,12 @@ impl Ask {
             Ask::Environment => "Load HDRI".into(),
             Ask::Texture { role, .. } => format!("Load {} texture", role.name()),
             Ask::Preset => "Import preset".into(),
+            Ask::ImportLighting => "Import lighting preset".into(),
+            Ask::ExportLighting => "Export lighting preset".into(),
             Ask::Relink(missing) => format!("Relink {}", name_of(&missing.path)),
             Ask::SaveAs(_) => "Save as".into(),
             Ask::SaveImage(_) => "Save image".into(),
+            Ask::SaveEnvironment => "Save environment".into(),
         }
     }
 
@@ -66,23 +75,26 @@ impl Ask {
         match self {
             Ask::Scene => "Open",
             Ask::Environment | Ask::Texture { .. } => "Load",
-            Ask::Preset => "Import",
+            Ask::Preset | Ask::ImportLighting => "Import",
             Ask::Relink(_) => "Relink",
-            Ask::SaveAs(_) | Ask::SaveImage(_) => "Save",
+            Ask::SaveAs(_) | Ask::SaveImage(_) | Ask::SaveEnvironment | Ask::ExportLighting => "Save",
         }
     }
 
     fn is_for_writing(&self) -> bool {
-        matches!(self, Ask::SaveAs(_) | Ask::SaveImage(_))
+        matches!(self, Ask::SaveAs(_) | Ask::SaveImage(_) | Ask::SaveEnvironment | Ask::ExportLighting)
     }
 
     fn endings(&self) -> (&'static str, &'static [&'static str]) {
         match self {
             Ask::Scene => ("Models and documents", SCENES),
-            Ask::Environment | Ask::Relink(Missing { kind: MissingKind::Environment, .. }) => ("HDR pictures", MAPS),
+            Ask::Environment | Ask::SaveEnvironment | Ask::Relink(Missing { kind: MissingKind::Environment, .. }) => {
+                ("HDR pictures", MAPS)
+            }
             Ask::Texture { .. } | Ask::Relink(Missing { kind: MissingKind::Texture, .. }) => ("Pictures", IMAGES),
             Ask::Relink(Missing { kind: MissingKind::Model, .. }) => ("Models", MODELS),
             Ask::Preset => ("Presets and tables of n and k", PRESETS),
+            Ask::ImportLighting | Ask::ExportLighting => ("Lighting presets", &["json"]),
             Ask::SaveAs(_) => ("Documents", &["burnish"]),
             Ask::SaveImage(_) => ("Pictures", &["png", "exr"]),
         }
@@ -253,6 +265,11 @@ impl Dialog {
         }
         match &self.ask {
             Ask::SaveImage(_) => _ = PictureFormat::of(&path).map_err(|e| format!("{}; {}", e.reason, e.remedy))?,
+            Ask::SaveEnvironment if !is_map(&path) => {
+                return Err(format!("{}: the name needs the ending .hdr or .exr", path.display()));
+            }
+            Ask::SaveEnvironment => {}
+            Ask::ExportLighting => _ = path.set_extension("json"),
             _ if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("burnish")) => {
                 path.as_mut_os_string().push(".burnish");
             }
@@ -307,6 +324,11 @@ impl FileKind {
             is(PRESETS).then_some(kind)
         }
     }
+}
+
+/// True for the name of an environment.
+fn is_map(path: &Path) -> bool {
+    FileKind::of(path) == Some(FileKind::Environment)
 }
 
 /// True for a file that is looked at before it is imported.

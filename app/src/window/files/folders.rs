@@ -57,4 +57,9 @@ impl Folders {
     pub fn presets(&self) -> PathBuf {
         self.data.join("presets")
     }
+
+    /// Lighting presets of the user.
+    pub fn lightings(&self) -> PathBuf {
+        self.presets().join("lighting")
+    }
 }

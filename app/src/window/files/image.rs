@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
-use burnish_core::file::write_picture;
+use burnish_core::file::{write_environment, write_picture};
 use burnish_core::job::{Handle, Job};
 use burnish_core::lighting::{Layers, MethodError, Store};
 use burnish_core::picture::Picture;
 use burnish_core::reference::{self, Film, Options, Pass, World};
+use burnish_core::scene::Environment;
 use burnish_render::{Gpu, Passes, Renderer, View};
 use eframe::egui;
 use glam::UVec2;
@@ -106,7 +107,7 @@ impl ImageSettings {
 }
 
 /// Work that ends with what to tell.
-type Writing = Job<Result<String, String>>;
+pub type Writing = Job<Result<String, String>>;
 
 /// Starts to write the picture that was asked for. Refuses where there is no whole one.
 pub fn start(
@@ -127,6 +128,17 @@ pub fn start(
     let label = format!("Writing {}", name_of(&path.to_string_lossy()));
     let work = move |_: &Handle| write(&picture, &path, tone, exposure_ev);
     Ok(Job::spawn(label, move || waker.request_repaint(), work))
+}
+
+/// Starts to write an environment: strength and tint are in its texels, its turn is not.
+pub fn write_map(map: Arc<Environment>, path: PathBuf, ctx: &egui::Context) -> Writing {
+    let waker = ctx.clone();
+    let label = format!("Writing {}", name_of(&path.to_string_lossy()));
+    let work = move |_: &Handle| {
+        write_environment(&map, &path).map_err(|e| e.to_string())?;
+        Ok(format!("Wrote {} ({} x {} pixels)", path.display(), map.width, map.height))
+    };
+    Job::spawn(label, move || waker.request_repaint(), work)
 }
 
 /// Starts to render the document's view into a file, on the window's device where there is one.

@@ -203,6 +203,8 @@ impl Files {
                     Purpose::Environment => Some(Ask::Environment),
                     Purpose::Texture { material, role } => Some(Ask::Texture { material, role }),
                     Purpose::Preset => Some(Ask::Preset),
+                    Purpose::ImportLighting => Some(Ask::ImportLighting),
+                    Purpose::ExportLighting => Some(Ask::ExportLighting),
                     Purpose::Missing { index, .. } => session.missing.get(index).cloned().map(Ask::Relink),
                 };
                 if let Some(ask) = ask {
@@ -243,6 +245,7 @@ impl Files {
                 let traced = reference.shown().and_then(Look::whole_size);
                 self.open_dialog(Ask::SaveImage(ImageSettings::new(size, traced, reference.is_on())), session);
             }
+            Command::SaveEnvironment => self.open_dialog(Ask::SaveEnvironment, session),
             Command::Notices => self.shows_notices = true,
             Command::Quit => self.leave(Next::Quit, session, ctx),
             _ => {}
@@ -254,8 +257,10 @@ impl Files {
         let path = match &ask {
             Ask::SaveAs(_) => beside(session, "burnish"),
             Ask::SaveImage(_) => beside(session, "png"),
+            Ask::SaveEnvironment => beside(session, "hdr"),
             Ask::Relink(missing) => missing.path.clone(),
-            Ask::Scene | Ask::Environment | Ask::Texture { .. } | Ask::Preset => String::new(),
+            Ask::ExportLighting => beside(session, "json"),
+            Ask::Scene | Ask::Environment | Ask::Texture { .. } | Ask::Preset | Ask::ImportLighting => String::new(),
         };
         self.dialog = Some(Dialog::new(ask, path));
     }

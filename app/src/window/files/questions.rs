@@ -7,6 +7,7 @@ use eframe::egui;
 use super::dialog::{Answer, Ask};
 use super::save::{self, Choice, Wish};
 use super::{Files, drop, image, notices};
+use crate::window::lights;
 use crate::window::panel::Context;
 use crate::window::request::Request;
 
@@ -60,8 +61,17 @@ impl Files {
             Ask::Environment => self.outbox.push(Request::LoadEnvironment(path)),
             Ask::Texture { material, role } => self.outbox.push(Request::LoadTexture { material, role, path }),
             Ask::Preset => self.outbox.push(Request::ImportPreset(path)),
+            Ask::ImportLighting => context.lightings.import(path),
+            Ask::ExportLighting => {
+                let stem = path.file_stem().map_or("lights".into(), |stem| stem.to_string_lossy().into_owned());
+                context.lightings.export(lights::preset(context.session, &stem), path);
+            }
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
             Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
+            Ask::SaveEnvironment => match context.session.scene().environment.clone() {
+                Some(map) => self.picture = Some(image::write_map(map, path, ctx)),
+                None => self.outbox.push(Request::Error("the scene has no environment to save".into())),
+            },
             Ask::SaveImage(settings) => {
                 let Context { session, stage, reference, .. } = context;
                 match image::start(

@@ -10,6 +10,7 @@ mod presets;
 mod reflectance;
 mod row;
 mod scene_tree;
+mod scope;
 mod start;
 mod status;
 mod viewport;
@@ -17,15 +18,18 @@ mod viewport;
 use eframe::egui::{self, WidgetText};
 use serde::{Deserialize, Serialize};
 
+use super::aids::Aids;
 use super::chart::Chart;
 use super::compare::Compare;
 use super::preferences::Preferences;
 use super::preparations::Preparations;
 use super::reference::Reference;
 use super::request::Requests;
+use super::scope::Scope;
 use super::session::Session;
 use super::stage::Stage;
 use super::thumbnails::Thumbnails;
+use super::user_lightings::UserLightings;
 use super::user_presets::UserPresets;
 
 pub use chart::ChartPanel;
@@ -37,6 +41,7 @@ pub use material::MaterialPanel;
 pub use presets::{FormSettings, PresetsPanel, assign, f0, f0_ui, forms_ui, warning_ui};
 pub use reflectance::ReflectancePanel;
 pub use scene_tree::SceneTree;
+pub use scope::ScopePanel;
 pub use start::StartPage;
 pub use status::StatusLine;
 pub use viewport::{Tool, ViewportPanel};
@@ -57,10 +62,16 @@ pub struct Context<'a> {
     pub compare: &'a mut Compare,
     /// Time against error.
     pub chart: &'a mut Chart,
+    /// How the picture is looked at.
+    pub aids: &'a mut Aids,
+    /// How its levels are spread.
+    pub scope: &'a mut Scope,
     /// Wishes for after the frame.
     pub requests: &'a mut Requests,
     /// The user's presets.
     pub own: &'a mut UserPresets,
+    /// The user's lighting presets.
+    pub lightings: &'a mut UserLightings,
     /// Pictures of presets.
     pub thumbnails: &'a mut Thumbnails,
 }
@@ -92,13 +103,15 @@ pub enum Pane {
     Chart,
     /// Reflectance against angle.
     Reflectance,
+    /// Levels of the picture.
+    Scope,
     /// Steps to undo.
     History,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Pane; 10] = [
+    pub const ALL: [Pane; 11] = [
         Pane::Viewport,
         Pane::Scene,
         Pane::Material,
@@ -108,6 +121,7 @@ impl Pane {
         Pane::Compare,
         Pane::Chart,
         Pane::Reflectance,
+        Pane::Scope,
         Pane::History,
     ];
 
@@ -123,6 +137,7 @@ impl Pane {
             Pane::Compare => "Compare",
             Pane::Chart => "Chart",
             Pane::Reflectance => "Reflectance",
+            Pane::Scope => "Scope",
             Pane::History => "History",
         }
     }
@@ -148,6 +163,7 @@ pub struct Panels {
     compare: ComparePanel,
     chart: ChartPanel,
     reflectance: ReflectancePanel,
+    scope: ScopePanel,
     history: HistoryPanel,
 }
 
@@ -163,6 +179,7 @@ impl Panels {
             Pane::Compare => self.compare.ui(ui, context),
             Pane::Chart => self.chart.ui(ui, context),
             Pane::Reflectance => self.reflectance.ui(ui, context),
+            Pane::Scope => self.scope.ui(ui, context),
             Pane::History => self.history.ui(ui, context),
         }
     }

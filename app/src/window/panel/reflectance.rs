@@ -5,23 +5,19 @@ use burnish_core::material::preset::{FormChoice, Preset};
 use burnish_core::material::{Material, Reflectance};
 use burnish_core::surface::dielectric;
 use burnish_core::surface::fresnel::schlick;
-use eframe::egui::{self, Color32, WidgetInfo};
+use eframe::egui::{self, WidgetInfo};
 use egui_plot::{GridMark, Line, LineStyle, PlotPoint, Text};
 use glam::{DVec3, Vec3};
 
 use super::Context;
 use super::presets::title;
 use crate::window::still_plot::still_plot;
+use crate::window::theme::CHANNELS;
 
 /// Degrees that are sampled, and the last of them.
 const STEPS: usize = 90;
 /// Room for the numbers and the notes around the plot, points.
 const AROUND: f32 = 50.0;
-
-/// R, G and B with the colours of Okabe and Ito, told apart without red and green as well.
-const CHANNELS: [(&str, Color32); 3] =
-    [("R", Color32::from_rgb(0xd5, 0x5e, 0x00)), ("G", Color32::from_rgb(0x00, 0x9e, 0x73)), ("B", BLUE)];
-const BLUE: Color32 = Color32::from_rgb(0x2f, 0x8f, 0xd0);
 
 /// A curve at every degree from 0 to 90.
 type Curve = Vec<Vec3>;

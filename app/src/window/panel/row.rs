@@ -1,7 +1,7 @@
 //! Rows of the panels: settings of the document, under titles.
 
 use burnish_core::document::Document;
-use burnish_core::param::{ParamSpec, ParamValue};
+use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use eframe::egui;
 
 use crate::window::session::Session;
@@ -11,6 +11,17 @@ use crate::window::widget::{Change, param_ui};
 pub fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
     egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);
     ui.add_space(4.0);
+}
+
+/// A setting of the document that only the next frame reads.
+pub const fn spec(
+    key: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    kind: ParamKind,
+    help: &'static str,
+) -> ParamSpec {
+    ParamSpec { key, label, unit, kind, help, affects: Affects::Frame }
 }
 
 /// A row for a value of the document: `set` writes a new one as the step `label`.

@@ -14,6 +14,7 @@ use burnish_core::lighting::{Layers, Prepared};
 use burnish_core::material::preset::FormChoice;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
+use burnish_core::reference::Contribution;
 use burnish_core::scene::{Camera, Scene};
 use eframe::egui;
 use glam::{UVec2, Vec2, Vec3};
@@ -31,6 +32,7 @@ pub struct Subject {
     camera: Camera,
     size: UVec2,
     settings: Settings,
+    contribution: Contribution,
     by: By,
 }
 
@@ -89,9 +91,16 @@ impl Subject {
             camera: camera.clone(),
             size: limited(size),
             settings: document.lighting.reference_settings(),
+            contribution: Contribution::All,
             by: By::Paths(document.lighting.reference_form()),
             document: document.clone(),
         }
+    }
+
+    /// The light of one source of it.
+    #[must_use]
+    pub fn showing(self, contribution: Contribution) -> Subject {
+        Subject { contribution, ..self }
     }
 
     /// The same by the document's methods, on the processor.
@@ -108,6 +117,7 @@ impl Subject {
             && self.size == other.size
             && self.by.is_like(&other.by)
             && self.settings == other.settings
+            && self.contribution == other.contribution
     }
 }
 

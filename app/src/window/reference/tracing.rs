@@ -152,7 +152,7 @@ impl Tracing {
     }
 
     fn prepare(&mut self, subject: &Subject) {
-        let Subject { document, scene, settings, by, .. } = subject;
+        let Subject { document, scene, settings, contribution, by, .. } = subject;
         // The live scene has its metals in the form that the method asks for.
         let scene = match by {
             By::Paths(form) => document.in_form(scene, *form, &mut self.curves),
@@ -162,7 +162,7 @@ impl Tracing {
         let metal = |id: &str| document.metal(id).cloned();
         let old = self.world.take();
         self.world = Some(match by {
-            By::Paths(_) => World::of_settings(&scene, settings, old, metal).0,
+            By::Paths(_) => World::of_settings(&scene, settings, old, metal).0.showing(*contribution),
             // Methods on the processor know colours only.
             By::Points(..) => {
                 let options = Options::new(settings);

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use burnish_core::color::tone::ToneMap;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Drawn, Frame, Gpu, GpuError, Passes, PendingPicture, Plate, RenderError, Viewport};
+use burnish_render::{Display, Drawn, Frame, Gpu, GpuError, Passes, PendingPicture, Plate, RenderError, Viewport};
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -92,17 +91,17 @@ impl Live {
     }
 
     /// Shows a picture that was computed elsewhere.
-    pub fn show(&mut self, screen: Screen, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+    pub fn show(&mut self, screen: Screen, picture: &Arc<Picture>, display: Display) -> Shown {
         let shown = self.attempt(screen, |live| {
             live.fail_for_trial()?;
             match screen {
                 Screen::Main => {
-                    live.plate.draw(picture, tone, exposure_ev)?;
+                    live.plate.draw(picture, display)?;
                     present(&live.render, &mut live.texture, live.plate.output());
                 }
                 Screen::Second => {
                     let (render, second) = live.second();
-                    second.plate.draw(picture, tone, exposure_ev)?;
+                    second.plate.draw(picture, display)?;
                     present(render, &mut second.texture, second.plate.output());
                 }
             }

@@ -5,10 +5,9 @@ mod losses;
 
 use std::sync::Arc;
 
-use burnish_core::color::tone::ToneMap;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Drawn, Frame, Passes, PendingPicture};
+use burnish_render::{Display, Drawn, Frame, Passes, PendingPicture};
 use eframe::egui::TextureId;
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
@@ -106,15 +105,15 @@ impl Stage {
     }
 
     /// Shows a picture that was computed elsewhere instead; it is repainted when there is another.
-    pub fn show(&mut self, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
-        self.show_on(Screen::Main, picture, tone, exposure_ev)
+    pub fn show(&mut self, picture: &Arc<Picture>, display: Display) -> Shown {
+        self.show_on(Screen::Main, picture, display)
     }
 
     /// Shows a picture that was computed elsewhere on a screen.
-    pub fn show_on(&mut self, screen: Screen, picture: &Arc<Picture>, tone: ToneMap, exposure_ev: f32) -> Shown {
+    pub fn show_on(&mut self, screen: Screen, picture: &Arc<Picture>, display: Display) -> Shown {
         match self {
             Stage::Flat => Shown { settled: true, ..Shown::default() },
-            Stage::Live(live) => live.show(screen, picture, tone, exposure_ev),
+            Stage::Live(live) => live.show(screen, picture, display),
         }
     }
 

@@ -12,7 +12,8 @@ pub(super) const RESET_WIDTH: f32 = 18.0;
 /// Widths of names and of controls in rows like those of [`param_ui`].
 pub fn columns(ui: &egui::Ui) -> [f32; 2] {
     let gap = ui.spacing().item_spacing.x;
-    let both = ui.available_width() - RESET_WIDTH - gap;
+    // A panel that was squeezed to nothing has less than none.
+    let both = (ui.available_width() - RESET_WIDTH - gap).max(0.0);
     [both * NAME_SHARE, (both - both * NAME_SHARE - gap).max(40.0)]
 }
 

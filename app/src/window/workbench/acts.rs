@@ -63,6 +63,7 @@ impl Workbench {
             Command::Panel(pane) => Some(layout::is_shown(&self.tree, pane)),
             Command::Orthographic => Some(self.session.document().view.camera.orthographic),
             Command::Reference => Some(self.reference.is_on() && self.compare.view().is_none()),
+            Command::Display(mode) => Some(self.aids.mode == mode),
             Command::Compare(view) => Some(self.compare.view() == Some(view)),
             Command::Tool(tool) => Some(self.panels.viewport.tools.tool == tool),
             Command::ThemeSystem => Some(self.preferences.dark.is_none()),
@@ -85,6 +86,7 @@ impl Workbench {
             | Command::Save
             | Command::SaveAs
             | Command::SaveImage
+            | Command::SaveEnvironment
             | Command::Notices
             | Command::Quit => {
                 self.files.command(command, &mut self.session, (&self.stage, &self.reference), ctx);
@@ -115,6 +117,7 @@ impl Workbench {
                 self.reference.switch(!self.reference.is_on());
                 self.compare.show(None);
             }
+            Command::Display(mode) => self.aids.toggle(mode),
             Command::Compare(view) => {
                 self.reference.switch(false);
                 self.compare.show(Some(view).filter(|view| self.compare.view() != Some(*view)));

@@ -9,6 +9,7 @@ use burnish_core::document;
 use eframe::egui::{self, Event};
 use egui_tiles::Tree;
 
+use super::aids::Aids;
 use super::chart::Chart;
 use super::compare::Compare;
 use super::files::{Files, Folders};
@@ -18,13 +19,15 @@ use super::preferences::Preferences;
 use super::preparations::Preparations;
 use super::reference::Reference;
 use super::request::{Request, Requests};
+use super::scope::Scope;
 use super::session::Session;
 use super::stage::Stage;
 use super::table_import::TableImport;
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
+use super::user_lightings::UserLightings;
 use super::user_presets::{Arrival, UserPresets};
-use super::{layout, shortcuts, theme};
+use super::{layout, lights, shortcuts, theme};
 
 /// Frames of the viewport's picture after which other pictures may be drawn.
 const RESTING_FRAMES: u32 = 4;
@@ -51,6 +54,8 @@ pub struct Workbench {
     preparations: Preparations,
     compare: Compare,
     chart: Chart,
+    aids: Aids,
+    scope: Scope,
     panels: Panels,
     tree: Tree<Pane>,
     /// The layout differs from that of the preferences.
@@ -60,6 +65,7 @@ pub struct Workbench {
     requests: Requests,
     files: Files,
     own: UserPresets,
+    lightings: UserLightings,
     tables: TableImport,
     thumbnails: Thumbnails,
     toasts: Toasts,
@@ -91,11 +97,14 @@ impl Workbench {
             preparations: Preparations::new(store.clone()),
             compare: Compare::new(store),
             chart: Chart::new(files.folders().map(Folders::bench)),
+            aids: Aids::default(),
+            scope: Scope::default(),
             panels: Panels::default(),
             start: start.then(StartPage::default),
             status: StatusLine::default(),
             requests: Requests::new(),
             own: UserPresets::new(files.folders().map(Folders::presets)),
+            lightings: UserLightings::new(files.folders().map(Folders::lightings)),
             thumbnails: Thumbnails::new(files.folders().map(Folders::thumbnails)),
             files,
             tables: TableImport::default(),
@@ -138,6 +147,8 @@ impl Workbench {
             || self.compare.is_busy()
             || self.preparations.is_busy()
             || self.chart.is_busy()
+            || self.scope.is_busy()
+            || self.lightings.is_busy()
     }
 
     /// Goes over to another session, away from the start page.
@@ -202,6 +213,11 @@ impl Workbench {
         &self.chart
     }
 
+    /// How the picture is looked at.
+    pub fn aids(&self) -> &Aids {
+        &self.aids
+    }
+
     /// Time against error, for tests that bring records of their own.
     pub fn chart_mut(&mut self) -> &mut Chart {
         &mut self.chart
@@ -231,6 +247,8 @@ impl Workbench {
             preparations,
             compare,
             chart,
+            aids,
+            scope,
             panels,
             tree,
             start,
@@ -238,6 +256,7 @@ impl Workbench {
             requests,
             files,
             own,
+            lightings,
             tables,
             thumbnails,
             ..
@@ -254,8 +273,25 @@ impl Workbench {
                 requests.push(Request::AssignPreset { preset: key, materials: session.selected_materials() });
             }
         }
-        let mut context =
-            Context { session, preferences, stage, reference, preparations, compare, chart, requests, own, thumbnails };
+        if let Some(preset) = lightings.frame(ui.ctx(), requests) {
+            lights::apply(session, &preset);
+        }
+        aids.follow(session.scene());
+        let mut context = Context {
+            session,
+            preferences,
+            stage,
+            reference,
+            preparations,
+            compare,
+            chart,
+            aids,
+            scope,
+            requests,
+            own,
+            lightings,
+            thumbnails,
+        };
         egui::Panel::bottom("status").show(ui, |ui| status.ui(ui, &mut context));
         if start.is_none() {
             files.banner_ui(ui, &mut context);
@@ -289,6 +325,7 @@ impl Workbench {
         self.keep_layout(ui.ctx());
         self.reference.end_frame();
         self.compare.end_frame(&mut self.stage);
+        self.scope.end_frame();
         // The picture was drawn before the panel that changed it.
         if self.session.revision != revision {
             self.note_input();

@@ -57,6 +57,24 @@ pub struct SoftBox {
     pub shape: Shape,
 }
 
+impl SoftBox {
+    /// Unit directions toward so many points of its edge, in order around it; none where it has no size.
+    pub fn outline(&self, points: usize) -> Vec<Vec3> {
+        let Some(sheet) = Sheet::new(self) else { return Vec::new() };
+        let edge = |i: usize| {
+            let (sin, cos) = (std::f32::consts::TAU * (i as f32 + 0.5) / points as f32).sin_cos();
+            let round = Vec2::new(cos, sin);
+            let place = match self.shape {
+                Shape::Disc => round,
+                Shape::Rectangle => round / round.abs().max_element(),
+            };
+            let across = sheet.half.x * place.x * sheet.across;
+            (sheet.toward + across + sheet.half.y * place.y * sheet.up).normalize()
+        };
+        (0..points).map(edge).collect()
+    }
+}
+
 impl Studio {
     /// Paints an equirectangular map in nit. Edges of softboxes are smoothed over a texel.
     pub fn paint(&self, width: u32, height: u32) -> Environment {
@@ -232,6 +250,22 @@ mod tests {
         assert!((room.radiance(Vec3::Y) - Vec3::X).length() < 0.01);
         assert!((room.radiance(Vec3::NEG_X) - Vec3::Y).length() < 0.01);
         assert!((room.radiance(Vec3::NEG_Y) - Vec3::Z).length() < 0.01);
+    }
+
+    #[test]
+    fn the_outline_is_where_the_light_ends() {
+        for shape in [Shape::Rectangle, Shape::Disc] {
+            let shape =
+                SoftBox { shape, azimuth: 0.7, elevation: -0.4, roll: 0.5, size: Vec2::new(0.6, 0.3), ..square() };
+            let sheet = Sheet::new(&shape).unwrap();
+            let outline = shape.outline(32);
+            assert_eq!(outline.len(), 32);
+            for direction in outline {
+                let inside = sheet.inside(sheet.place(direction).unwrap());
+                assert!(inside.abs() < 1e-5, "{inside} at {direction}");
+            }
+        }
+        assert!(SoftBox { size: Vec2::ZERO, ..square() }.outline(8).is_empty());
     }
 
     #[test]

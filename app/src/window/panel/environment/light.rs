@@ -1,63 +1,157 @@
-//! The HDRI and how its light is shown.
+//! What lights the scene from infinitely far away: a map from a file, a sky or a studio, and how it stands.
 
-use burnish_core::color::tone::ToneMap;
-use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
-use eframe::egui;
+use burnish_core::color::rgb::luminance;
+use burnish_core::document::{MadeEntry, SkyEntry, StudioEntry};
+use burnish_core::param::{ParamKind, ParamSpec, ParamValue};
+use burnish_core::scene::LightKind;
+use eframe::egui::{self, Role, WidgetInfo};
 
-use super::{Context, number, row_ui};
+use super::{Context, map, number, row_ui, sky, studio, tone};
+use crate::number::short;
+use crate::window::commands::Command;
 use crate::window::files::typed_path;
+use crate::window::panel::row::spec;
 use crate::window::request::{Purpose, Request};
 use crate::window::session::Session;
 use crate::window::widget::name_input;
 
-const ROTATION: ParamSpec = ParamSpec {
-    key: "rotation",
-    label: "Rotation",
-    unit: "deg",
-    kind: ParamKind::Number { min: -180.0, max: 180.0, default: 0.0 },
-    help: "Turns the environment counter-clockwise about the vertical axis; Shift+right drag in the viewport does it too.",
-    affects: Affects::Frame,
-};
+const ROTATION: ParamSpec = spec(
+    "rotation",
+    "Rotation",
+    "deg",
+    ParamKind::Number { min: -180.0, max: 180.0, default: 0.0 },
+    "Turns the environment counter-clockwise about the vertical axis; Shift+right drag in the viewport does it too.",
+);
 
-const STRENGTH: ParamSpec = ParamSpec {
-    key: "strength",
-    label: "Strength",
-    unit: "",
-    kind: ParamKind::Number { min: 0.0, max: 1000.0, default: 1.0 },
-    help: "Factor on the radiance of the environment, background included; lamps keep theirs.",
-    affects: Affects::Frame,
-};
+const STRENGTH: ParamSpec = spec(
+    "strength",
+    "Strength",
+    "",
+    ParamKind::Number { min: 0.0, max: 1000.0, default: 1.0 },
+    "Factor on the radiance of the environment, background included; lamps keep theirs.",
+);
 
-const EXPOSURE: ParamSpec = ParamSpec {
-    key: "exposure",
-    label: "Exposure",
-    unit: "EV",
-    kind: ParamKind::Number { min: -16.0, max: 16.0, default: 0.0 },
-    help: "Stops by which the picture is brightened before the tone map; Shift+wheel in the viewport does it too.",
-    affects: Affects::Frame,
-};
+const TINT: ParamSpec = spec(
+    "tint",
+    "Tint",
+    "",
+    ParamKind::Color { max: 4.0, default: [1.0; 3] },
+    "Colour that multiplies the environment: its light, its reflections and the background.",
+);
 
-/// Titles of the tone maps in the order of their numbers.
-const TITLES: &[&str] = &["None (clamp)", "Khronos PBR Neutral", "AgX", "ACES fit"];
+const SUN: ParamSpec = spec(
+    "sun-split",
+    "Sun as a light",
+    "",
+    ParamKind::Toggle { default: false },
+    "Takes the brightest small region out of the map and makes a light of it: its shadows are sharp, and its strength can be \
+     set where the file has cut it off.",
+);
 
-const TONE: ParamSpec = ParamSpec {
-    key: "tone",
-    label: "Tone map",
-    unit: "",
-    kind: ParamKind::Choice { options: TITLES, default: 1 },
-    help: "How linear light becomes what the screen shows. `None` is the one to measure by.",
-    affects: Affects::Frame,
-};
+/// Where the map comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A file, the scene, or the built-in studio.
+    File,
+    Sky,
+    Studio,
+}
 
-/// Which HDRI, and how it stands.
+/// Which map, and how it stands.
 #[derive(Default)]
 pub struct LightSection {
     path: String,
+    map: map::MapView,
+    /// The softbox that is edited.
+    softbox: usize,
+    /// What was made before another kind was chosen.
+    sky: Option<SkyEntry>,
+    studio: Option<StudioEntry>,
 }
 
 impl LightSection {
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        let kind = self.kind_ui(ui, context.session);
         source_ui(ui, context.session);
+        self.map.ui(ui, context.session, &mut self.softbox);
+        let made = context.session.document().environment.made.clone();
+        match (kind, made) {
+            (Kind::Sky, Some(MadeEntry::Sky(entry))) => sky::ui(ui, context.session, &entry),
+            (Kind::Studio, Some(MadeEntry::Studio(entry))) => {
+                studio::ui(ui, context.session, &entry, &mut self.softbox);
+            }
+            _ => self.file_ui(ui, context),
+        }
+        let environment = &context.session.document().environment;
+        let (rotation, strength, tint) = (environment.rotation_deg, environment.strength, environment.tint);
+        let rotate = (&ROTATION, "Rotate environment");
+        row_ui(ui, context.session, rotate, ParamValue::Number(rotation), |document, value| {
+            document.environment.rotation_deg = number(value);
+        });
+        let strengthen = (&STRENGTH, "Environment strength");
+        row_ui(ui, context.session, strengthen, ParamValue::Number(strength), |document, value| {
+            document.environment.strength = number(value);
+        });
+        row_ui(ui, context.session, (&TINT, "Environment tint"), ParamValue::Color(tint), |document, value| {
+            if let ParamValue::Color(tint) = value {
+                document.environment.tint = tint;
+            }
+        });
+        let hover = "Write the map as .hdr or .exr, with strength and tint, not turned.";
+        if ui.button("Save environment...").on_hover_text(hover).clicked() {
+            context.requests.push(Request::Command(Command::SaveEnvironment));
+        }
+    }
+
+    /// The choice of the kind.
+    fn kind_ui(&mut self, ui: &mut egui::Ui, session: &mut Session) -> Kind {
+        let kind = kind(session);
+        ui.horizontal_wrapped(|ui| {
+            for (other, title, hover) in [
+                (Kind::File, "HDRI", "A map from a file, else that of the scene, else the built-in studio."),
+                (Kind::Sky, "Sky", "A sky by day by a few numbers, in true nit: the exposure is set for it."),
+                (Kind::Studio, "Studio", "Softboxes before a backdrop."),
+            ] {
+                let button = ui.selectable_label(kind == other, title).on_hover_text(hover);
+                button.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, kind == other, title));
+                if button.clicked() && kind != other {
+                    self.choose(session, other);
+                }
+            }
+        });
+        kind
+    }
+
+    /// Goes over to another kind as one step.
+    fn choose(&mut self, session: &mut Session, kind: Kind) {
+        let before = self::kind(session);
+        match &session.document().environment.made {
+            Some(MadeEntry::Sky(sky)) => self.sky = Some(sky.clone()),
+            Some(MadeEntry::Studio(studio)) => self.studio = Some(studio.clone()),
+            _ => {}
+        }
+        let made = match kind {
+            Kind::File => None,
+            Kind::Sky => Some(MadeEntry::Sky(self.sky.clone().unwrap_or_default())),
+            Kind::Studio => Some(MadeEntry::Studio(self.studio.clone().unwrap_or_default())),
+        };
+        let label = "Kind of environment";
+        session.seal();
+        session.edit(label, "", |document| {
+            document.environment.made = made;
+            if kind != Kind::File {
+                (document.environment.source, document.environment.sun_split) = (None, false);
+            }
+        });
+        // Skies are some 10 000 times as bright as what stands in other maps.
+        if kind == Kind::Sky || before == Kind::Sky {
+            tone::expose(session, label);
+        }
+        session.seal();
+    }
+
+    /// Loading a file, and the sun in it.
+    fn file_ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         ui.horizontal(|ui| {
             if ui.button("Load HDRI...").on_hover_text("Pick an .hdr or .exr file to light the scene with.").clicked() {
                 context.requests.push(Request::PickFile(Purpose::Environment));
@@ -70,16 +164,14 @@ impl LightSection {
             }
         });
         self.path_ui(ui, context);
-        let environment = &context.session.document().environment;
-        let (rotation, strength) = (environment.rotation_deg, environment.strength);
-        let rotate = (&ROTATION, "Rotate environment");
-        row_ui(ui, context.session, rotate, ParamValue::Number(rotation), |document, value| {
-            document.environment.rotation_deg = number(value);
+        let split = context.session.document().environment.sun_split;
+        row_ui(ui, context.session, (&SUN, "Sun as a light"), ParamValue::Toggle(split), |document, value| {
+            document.environment.sun_split = value == ParamValue::Toggle(true);
         });
-        let strengthen = (&STRENGTH, "Environment strength");
-        row_ui(ui, context.session, strengthen, ParamValue::Number(strength), |document, value| {
-            document.environment.strength = number(value);
-        });
+        if split {
+            let text = sun_text(context.session);
+            ui.add(egui::Label::new(egui::RichText::new(text).small().weak()).wrap());
+        }
     }
 
     /// The way around dialogs, which some systems do not have.
@@ -109,6 +201,7 @@ fn source_ui(ui: &mut egui::Ui, session: &Session) {
     let document = session.document();
     let from = match &document.environment.source {
         Some(path) => path.clone(),
+        None if document.environment.made.is_some() => "It is made by the numbers below.".into(),
         None if session.sources().models.get(&document.scene).is_some_and(|model| model.environment.is_some()) => {
             "It comes with the scene.".into()
         }
@@ -120,32 +213,29 @@ fn source_ui(ui: &mut egui::Ui, session: &Session) {
     ui.weak(format!("{} x {} pixels, also the background", map.width, map.height)).on_hover_text(hover);
 }
 
-/// Exposure and tone map.
-pub fn tone_ui(ui: &mut egui::Ui, session: &mut Session) {
-    let view = &session.document().view;
-    let (exposure, tone) = (view.exposure_ev, view.tone.parse::<ToneMap>().unwrap_or_default());
-    row_ui(ui, session, (&EXPOSURE, "Exposure"), ParamValue::Number(exposure), |document, value| {
-        document.view.exposure_ev = number(value);
-    });
-    row_ui(ui, session, (&TONE, "Tone map"), ParamValue::Choice(tone.number() as usize), |document, value| {
-        if let ParamValue::Choice(index) = value
-            && let Some(tone) = ToneMap::ALL.get(index)
-        {
-            document.view.tone = tone.id().into();
-        }
-    });
+/// Where the map of the document comes from.
+fn kind(session: &Session) -> Kind {
+    let environment = &session.document().environment;
+    match (&environment.source, &environment.made) {
+        (None, Some(MadeEntry::Sky(_))) => Kind::Sky,
+        (None, Some(MadeEntry::Studio(_))) => Kind::Studio,
+        _ => Kind::File,
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_tone_map_stands_in_the_list_under_its_number() {
-        assert_eq!(TITLES.len(), ToneMap::ALL.len());
-        for (place, tone) in ToneMap::ALL.into_iter().enumerate() {
-            assert_eq!((TITLES[place], tone.number() as usize), (tone.title(), place));
+/// The sun that was taken out of the map, or why there is none.
+fn sun_text(session: &Session) -> String {
+    let sun = session.scene().lights.iter().find(|light| light.name.starts_with("Sun of "));
+    match sun.map(|sun| (sun, sun.kind)) {
+        Some((sun, LightKind::Directional { angular_radius })) => format!(
+            "{}: {} lx on a surface that faces it, {:.2} degrees wide",
+            sun.name,
+            short(f64::from(luminance(sun.intensity))),
+            2.0 * angular_radius.to_degrees()
+        ),
+        _ => {
+            let why = session.resolved().notices.iter().find(|notice| notice.contains("no sun"));
+            why.cloned().unwrap_or_else(|| "No sun was taken out.".into())
         }
-        assert_eq!(TONE.default(), ParamValue::Choice(ToneMap::default().number() as usize));
     }
 }

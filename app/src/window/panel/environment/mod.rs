@@ -1,10 +1,15 @@
-//! Light and view: HDRI, exposure, tone map, camera, navigation, settings of the lighting method.
+//! Light and view: environment, background, exposure, tone map, camera, navigation, settings of the lighting method.
 
+mod background;
 mod camera;
 mod light;
 mod lighting;
+mod map;
 mod overrides;
 mod saved;
+mod sky;
+mod studio;
+mod tone;
 
 use eframe::egui;
 
@@ -22,7 +27,8 @@ impl EnvironmentPanel {
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         section(ui, "Environment light", |ui| self.light.ui(ui, context));
-        section(ui, "Exposure and tone", |ui| light::tone_ui(ui, context.session));
+        section(ui, "Background", |ui| background::ui(ui, context.session));
+        section(ui, "Exposure and tone", |ui| tone::ui(ui, context.session));
         section(ui, "Camera", |ui| camera::ui(ui, context.session));
         section(ui, "Saved cameras", |ui| self.saved.ui(ui, context));
         section(ui, "Lighting method", |ui| lighting::ui(ui, context));

@@ -3,25 +3,15 @@
 use std::ops::Deref;
 
 use burnish_core::document::{LightEntry, Shape};
-use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
+use burnish_core::param::{ParamKind, ParamSpec, ParamValue};
 use burnish_core::scene::photometry::{EFFICACY, Unit};
 use eframe::egui::{self, RichText};
 
 use crate::number::short;
 use crate::window::lights::{self, LightAct};
-use crate::window::panel::row::number;
+use crate::window::panel::row::{number, spec};
 use crate::window::session::Session;
 use crate::window::widget::{Change, choice_ui, columns, name_input, name_ui, param_ui};
-
-const fn spec(
-    key: &'static str,
-    label: &'static str,
-    unit: &'static str,
-    kind: ParamKind,
-    help: &'static str,
-) -> ParamSpec {
-    ParamSpec { key, label, unit, kind, help, affects: Affects::Frame }
-}
 
 const fn range(min: f64, max: f64, default: f64) -> ParamKind {
     ParamKind::Number { min, max, default }

@@ -145,7 +145,7 @@ fn side_picture(
     }
     if let Some(look) = tracer.look(subject, ctx) {
         let part = look.part();
-        return (stage.show_on(screen, &look.picture, frame.tone, frame.exposure_ev), part);
+        return (stage.show_on(screen, &look.picture, frame.display()), part);
     }
     let message = tracer.failure().map(|fault| format!("Side {} cannot be traced: {fault}.", side.letter()));
     (Shown { settled: true, message, ..Shown::default() }, Vec2::ONE)
@@ -299,7 +299,7 @@ fn live(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> Live {
         let tracer = compare.second();
         let subject = subject.by_points(layers.clone(), prepared);
         if let Some(look) = tracer.look(subject, ctx) {
-            let shown = stage.show_on(Screen::Main, &look.picture, frame.tone, frame.exposure_ev);
+            let shown = stage.show_on(Screen::Main, &look.picture, frame.display());
             return Live { shown, part: look.part(), picture: traced(Some(look)) };
         }
         // Classical light stands in, and nothing is measured.

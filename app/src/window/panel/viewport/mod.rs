@@ -4,6 +4,7 @@ mod cameras;
 mod compare;
 mod gizmo;
 mod lamps;
+mod legend;
 mod navigation;
 mod overlay;
 mod readout;
@@ -102,7 +103,11 @@ impl ViewportPanel {
         let moving = self.is_moving(context.session);
         let view = context.compare.view();
         let whole = UVec2::new(size.x as u32, size.y as u32);
-        let frame = frame_of(context.session, compare::size(view, whole), moving);
+        let mut frame = frame_of(context.session, compare::size(view, whole), moving);
+        frame.mode = context.aids.mode;
+        if view.is_none() {
+            frame.contribution = context.aids.contribution(context.session.scene());
+        }
         self.click(&response, context, &frame);
         self.drop_preset(&response, context, &frame);
         // A click or a drop may have changed the scene: this frame shows it already.
@@ -264,6 +269,9 @@ impl ViewportPanel {
             }
             _ => self.readout.clear(),
         }
+        if view.is_none() {
+            legend::ui(ui, rect, context.aids);
+        }
         if let Some(message) = &shown.message {
             overlay::message_ui(ui, rect, message);
         }
@@ -327,7 +335,7 @@ fn version(context: &Context<'_>, rect: Rect, point: egui::Pos2, shown: &Shown) 
 fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Shown, glam::Vec2) {
     let Context { session, stage, reference, preparations, .. } = context;
     let scene = session.scene();
-    let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size);
+    let mut subject = Subject::new(session.document(), scene, &frame.camera, frame.size).showing(frame.contribution);
     let layers = session.layers();
     let on_device = drawn_on_device(layers);
     reference.draw_live(!reference.is_on() && !on_device);
@@ -338,7 +346,7 @@ fn picture(ctx: &egui::Context, context: &mut Context<'_>, frame: &Frame) -> (Sh
         subject = subject.by_points(layers.clone(), prepared);
     }
     if let Some(look) = reference.look(subject, ctx) {
-        return (stage.show(&look.picture, frame.tone, frame.exposure_ev), look.part());
+        return (stage.show(&look.picture, frame.display()), look.part());
     }
     if let Some(fault) = reference.fault() {
         let shown = stage.draw(scene, frame);
@@ -382,6 +390,7 @@ fn frame_of(session: &Session, size: UVec2, moving: bool) -> Frame {
         tone: document.view.tone.parse::<ToneMap>().unwrap_or_default(),
         exposure_ev: document.view.exposure_ev as f32,
         mode: Default::default(),
+        contribution: Default::default(),
         moving,
     }
 }

@@ -5,14 +5,17 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 
 use super::*;
+use crate::window::aids::Aids;
 use crate::window::chart::Chart;
 use crate::window::compare::Compare;
 use crate::window::preferences::{Navigation, Preferences};
 use crate::window::preparations::Preparations;
 use crate::window::reference::Reference;
 use crate::window::request::Requests;
+use crate::window::scope::Scope;
 use crate::window::stage::Stage;
 use crate::window::thumbnails::Thumbnails;
+use crate::window::user_lightings::UserLightings;
 use crate::window::user_presets::UserPresets;
 
 struct Bench {
@@ -44,6 +47,8 @@ fn bench() -> Harness<'static, Bench> {
         let Bench { panel, session, preferences, stage, reference, compare, requests } = bench;
         let (own, thumbnails) = (&mut UserPresets::default(), &mut Thumbnails::default());
         let (preparations, chart) = (&mut Preparations::new(Store::none()), &mut Chart::new(None));
+        let lightings = &mut UserLightings::default();
+        let (aids, scope) = (&mut Aids::default(), &mut Scope::default());
         panel.ui(
             ui,
             &mut Context {
@@ -54,8 +59,11 @@ fn bench() -> Harness<'static, Bench> {
                 preparations,
                 compare,
                 chart,
+                aids,
+                scope,
                 requests,
                 own,
+                lightings,
                 thumbnails,
             },
         );

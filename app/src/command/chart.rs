@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use burnish_core::document::LightingPreset;
 use burnish_core::file::write_atomic;
 use burnish_core::lighting;
 use burnish_core::lighting::method::{self, Method, Sweep};
@@ -15,6 +16,7 @@ use burnish_core::reference::{self, Control};
 use burnish_core::scene::{Scene, gallery};
 use glam::UVec2;
 
+use super::lighting as presets;
 use crate::failure::{Exit, Failure, printable};
 use crate::report::bench::{drawing, page};
 use crate::window::Folders;
@@ -39,6 +41,9 @@ pub struct Args {
     /// Environment map, .hdr or .exr; repeatable: every scene under each [default: that of the scene, else a studio]
     #[arg(long, value_name = "FILE")]
     env: Vec<PathBuf>,
+    /// Lighting preset around the subject in the place of all lights: an id, `all`, or a .json file; repeatable: every scene under each
+    #[arg(long, value_name = "ID|FILE")]
+    lighting: Vec<String>,
     /// Pixels of the pictures
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = value::size)]
     size: UVec2,
@@ -142,14 +147,22 @@ fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
     if environments.is_empty() {
         environments.push(None);
     }
+    let mut lightings: Vec<Option<LightingPreset>> = presets::find_all(&args.lighting)?.into_iter().map(Some).collect();
+    if lightings.is_empty() {
+        lightings.push(None);
+    }
     let mut shots = Vec::new();
     for scene in &names {
         for environment in &environments {
-            let shot = shot(scene, environment.as_ref().map(|(_, map)| map), args, err)?;
             let under = environment.as_ref().filter(|_| environments.len() > 1);
             let under = under.and_then(|(file, _)| file.file_stem()).map(|stem| stem.to_string_lossy());
-            let name = under.map_or_else(|| shot.name.clone(), |map| format!("{} under {map}", shot.name));
-            shots.push(Shot { name, ..shot });
+            for preset in &lightings {
+                let map = environment.as_ref().map(|(_, map)| map);
+                let mut shot = shot(scene, (map, preset.as_ref()), args, err)?;
+                shot.name.extend(under.iter().map(|map| format!(" under {map}")));
+                shot.name.extend(preset.iter().map(|preset| format!(" lit by {}", preset.id)));
+                shots.push(shot);
+            }
         }
     }
     Ok(shots)
@@ -158,7 +171,7 @@ fn shots(args: &Args, err: &mut dyn Write) -> Result<Vec<Shot>, Failure> {
 /// What is looked at of a SCENE.
 fn shot(
     scene: &OsStr,
-    environment: Option<&source::EnvironmentFile>,
+    (environment, preset): (Option<&source::EnvironmentFile>, Option<&LightingPreset>),
     args: &Args,
     err: &mut dyn Write,
 ) -> Result<Shot, Failure> {
@@ -169,6 +182,10 @@ fn shot(
     let source::Opened { mut scene, notices, document, .. } = opened;
     for notice in notices {
         writeln!(err, "burnish: notice: {}: {}", printable(&name), printable(&notice))?;
+    }
+    // Around the subject that the scene has, as `render` does it: `--subject` changes what is measured, not what is seen.
+    if let Some(preset) = preset {
+        presets::light(&mut scene, preset);
     }
     if !args.subject.is_empty() {
         scene.subject = subject(&scene, &args.subject)?;

@@ -12,6 +12,7 @@ mod fresnel_times;
 mod gallery;
 mod glb;
 mod info;
+mod lighting;
 mod measure;
 mod methods;
 pub mod open;

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burnish_core::document::{self, Curves, Document, LightingPreset};
+use burnish_core::document::{Curves, Document, LightingPreset};
 use burnish_core::material::preset::{self, FormChoice, Preset, PresetError};
 use burnish_core::material::{Material, Reflectance, finish};
 use burnish_core::scene::{Camera, Scene};
 use glam::UVec2;
 
+use super::lighting;
 use crate::failure::Failure;
 use crate::source::{self, Opened, SceneArg};
 use crate::value::{self, CameraChoice, MetalChoice};
@@ -122,7 +123,9 @@ impl StageArgs {
         }
         let mut metals = BTreeMap::new();
         notices.extend(self.set_materials(&mut scene, choice, &mut metals)?);
-        self.set_lighting(&mut scene)?;
+        if let Some(wanted) = &self.lighting {
+            lighting::light(&mut scene, &lighting::find(wanted)?);
+        }
         let camera = self.camera(&scene, document.as_ref())?.unwrap_or(usual);
         Ok(Staged { scene, camera, size, notices, document, metals })
     }
@@ -165,19 +168,6 @@ impl StageArgs {
             *anisotropy = self.anisotropy.unwrap_or(*anisotropy);
         }
         Ok(notices)
-    }
-
-    /// Lights the scene as `--lighting` says; the strength and turn of its environment act on the map that is there.
-    fn set_lighting(&self, scene: &mut Scene) -> Result<(), Failure> {
-        let Some(wanted) = &self.lighting else { return Ok(()) };
-        let preset = LightingPreset::find(wanted).map_err(|e| Failure::usage(format!("--lighting {wanted}: {e}")))?;
-        scene.lights = document::shining(&preset.lights_around(scene.subject_bounds()), &[]);
-        if let (Some(map), Some(entry)) = (&mut scene.environment, &preset.environment) {
-            let map = Arc::make_mut(map);
-            map.strength *= entry.strength.max(0.0) as f32;
-            map.rotation += entry.rotation_deg.to_radians() as f32;
-        }
-        Ok(())
     }
 
     /// That of `--camera`.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use burnish_tests::scratch_folder;
+use burnish_tests::{repository, scratch_folder};
 
 use super::rendering::grey_environment;
 use super::{USAGE, burnish, text};
@@ -57,6 +57,37 @@ pub fn a_chart_is_the_same_twice_and_kept_in_between() {
     assert!(page.contains("reference of 8 paths a pixel, with bounces=1 clamp=10"), "{page}");
 }
 
+pub fn presets_replace_the_lights() {
+    let folder = scratch_folder("chart-lighting");
+    let [cache, csv, dark] = ["cache", "chart.csv", "dark.json"].map(|name| folder.join(name));
+    let preset = r#"{ "format": "burnish-lighting", "version": 1, "id": "dark", "name": "Dark", "lights": [],
+        "environment": { "strength": 0 } }"#;
+    fs::write(&dark, preset).expect("a writable folder");
+    let sky = grey_environment(&folder);
+    let more = folder.join("more.hdr");
+    fs::copy(&sky, &more).expect("a writable folder");
+    // The spot of this scene is its only light.
+    let scene = "gallery:workbench?room=none";
+    let size = ["--size", "32x18", "--samples", "8", "--methods", "reference", "--sweep", "samples=4"];
+    let maps = ["--env", text(&sky), "--env", text(&more)];
+    let lightings = ["--lighting", "rim", "--lighting", text(&dark)];
+    let files = ["--cache", text(&cache), "--csv", text(&csv)];
+    burnish(&[&["chart", scene], &size[..], &maps, &lightings, &files].concat()).succeeded();
+    let table = fs::read_to_string(&csv).expect("a table");
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let column = rows[0].iter().position(|column| *column == "frame_relmse").expect("a column");
+    let found: Vec<(&str, bool)> = rows[1..].iter().map(|row| (row[0], row[column].parse() == Ok(0.0))).collect();
+    let name = |words: &str| format!("{scene} under {words}");
+    // Paths of other seeds agree where nothing shines.
+    let expected = [
+        (name("studio lit by rim"), false),
+        (name("studio lit by dark"), true),
+        (name("more lit by rim"), false),
+        (name("more lit by dark"), true),
+    ];
+    assert_eq!(found, expected.each_ref().map(|(name, is_black)| (name.as_str(), *is_black)), "{table}");
+}
+
 pub fn what_cannot_be_measured_is_told() {
     let refused = |args: &[&str], words: &[&str]| {
         burnish(&[&["chart"], args].concat()).failed(USAGE, words);
@@ -70,5 +101,11 @@ pub fn what_cannot_be_measured_is_told() {
     refused(&["--truth", "bounce=1"], &["--truth bounce=1", "there are", "clamp"]);
     refused(&["--truth", "bounces=-1"], &["--truth bounces=-1", "0 to 1024"]);
     refused(&["--truth", "samples=4"], &["--truth samples=4", "--samples 4"]);
+    refused(&["--lighting", "moon"], &["--lighting moon", "jewellery-tent", ".json"]);
+    // Shots are told apart by the ids of presets.
+    let file = scratch_folder("chart-presets").join("mine.json");
+    let rim = fs::read_to_string(repository().join("presets/lighting/rim.json")).expect("a preset");
+    fs::write(&file, rim.replace("Two hard lights", "Two lights")).expect("a writable folder");
+    refused(&["--lighting", "all", "--lighting", text(&file)], &["mine.json", "`rim`"]);
     refused(&["--subject", "teapot"], &["teapot", "there are"]);
 }

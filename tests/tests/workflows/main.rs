@@ -68,6 +68,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
             &[Need::Gpu],
             chart::a_chart_is_the_same_twice_and_kept_in_between,
         ),
+        trial("a chart has each scene under each preset of lights", &[Need::Gpu], chart::presets_replace_the_lights),
         trial("what cannot be measured is told", &[], chart::what_cannot_be_measured_is_told),
         trial("the page of methods is that of the program", &[], the_page_of_methods),
         trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),

@@ -23,6 +23,7 @@ pub(crate) struct Targets {
     pub size: UVec2,
     gbuffer: GBuffer,
     gbuffer_group: wgpu::BindGroup,
+    catcher_group: wgpu::BindGroup,
     /// Scene-linear radiance of one frame.
     pub frame: wgpu::TextureView,
 }
@@ -34,6 +35,7 @@ impl Targets {
         Targets {
             size,
             gbuffer_group: passes.classical.group(gpu, &gbuffer),
+            catcher_group: passes.catcher.group(gpu, &gbuffer),
             gbuffer,
             frame: target(gpu, "frame", size, frame_format(gpu)).create_view(&Default::default()),
         }
@@ -58,6 +60,8 @@ pub(crate) struct Encoding {
     scene_group: wgpu::BindGroup,
     viewer: Vec4,
     samples: u32,
+    /// Lamps throw shadows on a ground that is seen.
+    catches: bool,
 }
 
 impl Encoding {
@@ -73,7 +77,9 @@ impl Encoding {
         let gpu = &passes.gpu;
         let uniform = gpu.buffer("view", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let scene_group = resident.on_gpu.group(&gpu.device, &passes.scene_layout, &uniform);
-        Encoding { scene_group, viewer: data.viewer, samples: data.samples }
+        let is_seen = matches!(settings.contribution, Contribution::All | Contribution::Environment);
+        let catches = is_seen && resident.background.catches && resident.shadows.light_count > 0;
+        Encoding { scene_group, viewer: data.viewer, samples: data.samples, catches }
     }
 
     /// What the surfaces are.
@@ -96,14 +102,14 @@ impl Encoding {
         targets: &Targets,
         rows: Range<u32>,
     ) {
-        let groups = [&self.scene_group, &targets.gbuffer_group, &resident.lights, &resident.background.group];
-        passes.classical.encode(
-            encoder,
-            &targets.frame,
-            groups,
-            Variant { sampled: self.samples > 0, areas: resident.shadows.has_areas },
-            rows,
-        );
+        let areas = resident.shadows.has_areas;
+        let with = |group| [&self.scene_group, group, &resident.lights, &resident.background.group];
+        if self.catches {
+            let groups = with(&targets.catcher_group);
+            passes.catcher.encode(encoder, &targets.gbuffer, groups, areas, rows.clone());
+        }
+        let variant = Variant { sampled: self.samples > 0, areas };
+        passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows);
     }
 
     /// Blended surfaces over them.

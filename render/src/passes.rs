@@ -6,6 +6,7 @@ use burnish_core::surface::ggx::albedo::AlbedoTable;
 
 use crate::device::Gpu;
 use crate::pass::accumulate::AccumulatePass;
+use crate::pass::catcher::CatcherPass;
 use crate::pass::classical::{ClassicalPass, Variant, light_layout};
 use crate::pass::display::DisplayPass;
 use crate::pass::environment::{EnvironmentPass, background_layout};
@@ -26,6 +27,7 @@ pub struct Passes {
     pub(crate) shadow: ShadowPass,
     pub(crate) gbuffer: GBufferPass,
     pub(crate) classical: ClassicalPass,
+    pub(crate) catcher: CatcherPass,
     pub(crate) forward: ForwardPass,
     pub(crate) accumulate: AccumulatePass,
     pub(crate) display: DisplayPass,
@@ -48,6 +50,7 @@ impl Passes {
             shadow: ShadowPass::new(gpu, &mesh),
             gbuffer: GBufferPass::new(gpu, &mesh),
             classical: ClassicalPass::new(gpu, &scene_layout, &light_layout, &background_layout, format),
+            catcher: CatcherPass::new(gpu, &scene_layout, &light_layout, &background_layout),
             forward: ForwardPass::new(gpu, &lit, format),
             accumulate: AccumulatePass::new(gpu),
             display: DisplayPass::new(gpu),

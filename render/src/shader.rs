@@ -23,6 +23,8 @@ const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
 const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
 const SOFT: &str = include_str!("pass/classical/soft.wgsl");
+const RAYS: &str = include_str!("pass/classical/rays.wgsl");
+const BACKGROUND: &str = include_str!("pass/environment/background.wgsl");
 
 /// Fills the G-buffer.
 pub static GBUFFER: Shader = Shader {
@@ -56,8 +58,26 @@ pub static CLASSICAL: Shader = Shader {
         SHADE,
         LAMPS,
         SOFT,
-        include_str!("pass/environment/background.wgsl"),
+        BACKGROUND,
+        RAYS,
         include_str!("pass/classical/classical.wgsl"),
+    ],
+};
+
+/// Shadows on the ground of the background.
+pub static CATCHER: Shader = Shader {
+    name: "catcher",
+    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SHADE,
+        LAMPS,
+        SOFT,
+        BACKGROUND,
+        RAYS,
+        include_str!("pass/catcher/catcher.wgsl"),
     ],
 };
 
@@ -84,7 +104,8 @@ pub static TIMES: Shader =
     Shader { name: "times", leaves: &[&fresnel::WGSL], files: &[include_str!("times/times.wgsl")] };
 
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] = &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &FORWARD, &ACCUMULATE, &DISPLAY, &TIMES];
+pub static ALL: &[&Shader] =
+    &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &CATCHER, &FORWARD, &ACCUMULATE, &DISPLAY, &TIMES];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "

@@ -9,6 +9,8 @@ mod area;
 mod background;
 #[path = "images/bumps.rs"]
 mod bumps;
+#[path = "images/catcher.rs"]
+mod catcher;
 #[path = "images/environment.rs"]
 mod environment;
 #[path = "images/losses.rs"]
@@ -52,6 +54,7 @@ fn main() {
     trials.extend(area::trials());
     trials.extend(background::trials());
     trials.extend(bumps::trials());
+    trials.extend(catcher::trials());
     trials.extend(environment::trials());
     trials.extend(losses::trials());
     trials.extend(plate::trials());

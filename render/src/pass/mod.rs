@@ -1,6 +1,7 @@
 //! One folder per pass: its pipelines in Rust beside its entry points in WGSL.
 
 pub mod accumulate;
+pub mod catcher;
 pub mod classical;
 pub mod display;
 pub mod environment;

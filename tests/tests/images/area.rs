@@ -9,7 +9,7 @@ use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::reference::{self, Contribution, Control, Film, Options, Pass, World};
 use burnish_core::scene::gallery::shape;
-use burnish_core::scene::{Camera, Environment, Instance, Light, LightKind, Scene, gallery};
+use burnish_core::scene::{Background, Camera, Environment, Ground, Instance, Light, LightKind, Scene, gallery};
 use burnish_core::surface::fresnel::Form;
 use burnish_render::{Gpu, Renderer, View};
 use burnish_tests::{Need, trial};
@@ -66,12 +66,12 @@ fn sun() -> Light {
 }
 
 /// A device with its pipelines, for many scenes.
-fn renderer(scene: &Scene) -> Renderer {
+pub fn renderer(scene: &Scene) -> Renderer {
     let gpu = Gpu::new().unwrap_or_else(|e| panic!("{e}"));
     Renderer::new(&gpu, scene).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn live(renderer: &mut Renderer, scene: &Scene, size: UVec2, frames: u32) -> Picture {
+pub fn live(renderer: &mut Renderer, scene: &Scene, size: UVec2, frames: u32) -> Picture {
     renderer.set_scene(&Arc::new(scene.clone())).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(renderer.unshadowed_lights(), &[] as &[String]);
     let camera = scene.cameras[0].clone();
@@ -79,7 +79,7 @@ fn live(renderer: &mut Renderer, scene: &Scene, size: UVec2, frames: u32) -> Pic
     renderer.render(&view).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn traced(scene: &Scene, size: UVec2, samples: u32) -> Picture {
+pub fn traced(scene: &Scene, size: UVec2, samples: u32) -> Picture {
     let world = World::new(&Arc::new(scene.clone()), Options { bounces: 1, ..Options::default() });
     let view = reference::View { camera: scene.cameras[0].clone(), size, seed: 1 };
     let mut film = Film::new(size);
@@ -89,7 +89,7 @@ fn traced(scene: &Scene, size: UVec2, samples: u32) -> Picture {
 }
 
 /// Mean |a - b| over mean b.
-fn apart(a: &Picture, b: &Picture) -> f64 {
+pub fn apart(a: &Picture, b: &Picture) -> f64 {
     let sum = |texel: Vec4| f64::from(texel.truncate().element_sum());
     let difference: f64 = a.texels.iter().zip(&b.texels).map(|(a, b)| sum((*a - *b).abs())).sum();
     difference / b.texels.iter().map(|b| sum(*b)).sum::<f64>()
@@ -125,7 +125,7 @@ fn balls() {
 }
 
 /// A matte floor with a bar over it, under a light.
-fn floor(kind: LightKind) -> Scene {
+pub fn floor(kind: LightKind) -> Scene {
     let mut scene = Scene { environment: black(), ..Scene::default() };
     let base_color = Vec3::splat(0.7);
     scene.materials.push(Material { base_color, roughness: 0.8, metallic: 0.0, specular: 0.0, ..Material::default() });
@@ -204,6 +204,9 @@ fn contributions() {
     let mut scene = gallery::open("ball?material=Cu&roughness=0.3").expect("a scene");
     let texels = (0..32 * 16).map(|i| Vec3::new(0.2, 0.3, 0.4) * (1.0 + (i % 32) as f32 / 8.0)).collect();
     scene.environment = Some(Arc::new(Environment::new("slope", 32, 16, texels)));
+    // The ground and the shadows on it belong to the environment.
+    let ground = Ground { middle: Vec3::new(0.0, -0.1, 0.0), height: 1.0, radius: 10.0, shadows: true };
+    scene.background = Background { map: None, ground: Some(ground) };
     scene.materials[0].emission = Vec3::new(0.05, 0.1, 0.2);
     scene.materials[0].coat = 0.5;
     let sphere = aimed(|_| LightKind::Sphere { radius: 0.03 }, Vec3::new(-0.15, 0.1, 0.1), Vec3::splat(6.0));

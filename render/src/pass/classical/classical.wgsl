@@ -6,17 +6,6 @@
 @group(1) @binding(3) var words3: texture_2d<u32>;
 @group(1) @binding(4) var depth: texture_depth_2d;
 
-// One triangle over the whole target.
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
-fn unproject(pixel: vec2f, depth_value: f32) -> vec4f {
-    let ndc = (pixel / view.size) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    return view.world_from_clip * vec4f(ndc, depth_value, 1.0);
-}
-
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
@@ -25,7 +14,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let direction = background_direction(position.xy);
         var value = lamps_seen(eye(position.xy), direction, 2.0 * FAR);
         if shows(CONTRIBUTION_ENVIRONMENT) {
-            value += background_seen(eye(position.xy), direction);
+            // Where there is no surface, the second words are what the catcher wrote.
+            let blocked = bitcast<vec3f>(textureLoad(words1, pixel, 0).xyz);
+            value += background_seen(eye(position.xy), direction) * (1.0 - blocked);
         }
         return vec4f(min(value, vec3f(frame_max)), 1.0);
     }
@@ -37,23 +28,4 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let origin = eye(position.xy);
     let before = lamps_seen(origin, background_direction(position.xy), distance(origin, point));
     return vec4f(min(shade(texel_unpack(packed), point, pixel) + before, vec3f(frame_max)), 1.0);
-}
-
-// Where the ray of a pixel starts.
-fn eye(pixel: vec2f) -> vec3f {
-    if view.viewer.w == 0.0 {
-        let near = unproject(pixel, 1.0);
-        return near.xyz / near.w;
-    }
-    return view.viewer.xyz;
-}
-
-// Direction in which a pixel looks past everything.
-fn background_direction(pixel: vec2f) -> vec3f {
-    if view.viewer.w == 0.0 {
-        return -normalize(view.viewer.xyz);
-    }
-    // Any depth in front of the viewer lies on the ray.
-    let world = unproject(pixel, 0.5);
-    return normalize(world.xyz / world.w - view.viewer.xyz);
 }

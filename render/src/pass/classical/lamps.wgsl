@@ -136,12 +136,14 @@ fn shadow_visibility(light: LightData, position: vec3f, normal: vec3f, to_light:
     if clip.w <= 0.0 || any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) {
         return 1.0;
     }
+    // The ground under a low sun lies behind the far plane of its map.
+    let depth = max(ndc.z, 0.0);
     let step = 1.0 / vec2f(textureDimensions(shadow_maps));
     var lit = 0.0;
     for (var y = -1; y <= 1; y++) {
         for (var x = -1; x <= 1; x++) {
             let at = uv + vec2f(f32(x), f32(y)) * step;
-            lit += textureSampleCompareLevel(shadow_maps, shadow_sampler, at, layer, ndc.z);
+            lit += textureSampleCompareLevel(shadow_maps, shadow_sampler, at, layer, depth);
         }
     }
     return lit / 9.0;

@@ -103,6 +103,12 @@ fn shows(source: u32) -> bool {
     return view.contribution == CONTRIBUTION_ALL || view.contribution == source;
 }
 
+// What turns the samples of a pixel in this frame.
+fn sample_rotation(pixel: vec2u) -> vec2f {
+    let hash = sampling_pcg(pixel.x + sampling_pcg(pixel.y + sampling_pcg(view.frame)));
+    return vec2f(sampling_unit(hash), sampling_unit(sampling_pcg(hash)));
+}
+
 fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let m = materials[instances[t.id - 1u].material];
     let s = surface_of(t, m);
@@ -112,8 +118,7 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     let wo = classical_facing(frame_to_local(base, to_viewer));
     let coat_wo = classical_facing(frame_to_local(coat, to_viewer));
 
-    let hash = sampling_pcg(pixel.x + sampling_pcg(pixel.y + sampling_pcg(view.frame)));
-    let rotation = vec2f(sampling_unit(hash), sampling_unit(sampling_pcg(hash)));
+    let rotation = sample_rotation(pixel);
     var value = vec3f(0.0);
     if shows(CONTRIBUTION_EMISSION) {
         value = t.emission;

@@ -91,6 +91,15 @@ fn soft_visibility(light: LightData, position: vec3f, normal: vec3f, rotation: v
     }
     let texel = light.shadow_texel * select(length(seen.toward), 1.0, sun);
     let margin = 2.0 * texel;
+    // What can hide a sun is nearer than half the depth of its map, from points within the scene; ground under a low sun lies
+    // behind all of it, and further away.
+    var nearest = 0.02;
+    var farthest = 0.5;
+    if sun {
+        let depth = (shadow_clip_from_world[light.shadow_layer] * vec4f(position, 1.0)).z;
+        nearest = max(nearest, 0.25 - depth);
+        farthest = max(farthest, 0.75 - depth);
+    }
     // How far a surface in the way is: for a sun in metres from the point, else as a share of the way from the light.
     var sum = 0.0;
     var found = 0.0;
@@ -98,7 +107,7 @@ fn soft_visibility(light: LightData, position: vec3f, normal: vec3f, rotation: v
         let place = soft_place(i, rotation, seen.round);
         let step = (f32(i) + fract(rotation.x + rotation.y)) / f32(view.soft_searched);
         // From the point outward; squares look closer where most is.
-        var spread = mix(0.02, 0.5, step * step) * light.shadow_depth;
+        var spread = mix(nearest, farthest, step * step) * light.shadow_depth;
         if !sun {
             let share = mix(0.98, 0.15, step);
             spread = (1.0 - share) / share;

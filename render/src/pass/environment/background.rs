@@ -26,6 +26,8 @@ pub fn background_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 pub struct BackgroundMap {
     /// See [`background_layout`].
     pub group: wgpu::BindGroup,
+    /// It has a ground on which the scene throws shadows.
+    pub catches: bool,
     view: wgpu::TextureView,
     /// What the texture holds; `None` for nothing.
     map: Option<(Arc<[Vec3]>, u32)>,
@@ -59,7 +61,8 @@ impl BackgroundMap {
                 wgpu::BindGroupEntry { binding: 1, resource: uniform.as_entire_binding() },
             ],
         });
-        Ok(BackgroundMap { group, view, map: held })
+        let catches = scene.background.ground.is_some_and(|ground| ground.shadows);
+        Ok(BackgroundMap { group, catches, view, map: held })
     }
 }
 

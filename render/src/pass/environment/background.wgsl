@@ -23,13 +23,17 @@ fn background_radiance(d: vec3f) -> vec3f {
     return background.scale * mix(top, bottom, f.y);
 }
 
-// Along a ray of the eye. Where `found.w` is above 0 it meets the ground, so far from its origin: shadows of the scene belong
-// there as a factor.
-fn background_seen(origin: vec3f, direction: vec3f) -> vec3f {
-    var found = vec4f(direction, 0.0);
+// Where a ray of the eye looks into the map; w is the distance to the ground along it, 0 where it does not meet that.
+fn background_found(origin: vec3f, direction: vec3f) -> vec4f {
     if background.radius > 0.0 {
-        found = ground_project(origin, direction, background.center, background.height, background.radius);
+        return ground_project(origin, direction, background.center, background.height, background.radius);
     }
+    return vec4f(direction, 0.0);
+}
+
+// Along a ray of the eye, without the shadows of the scene.
+fn background_seen(origin: vec3f, direction: vec3f) -> vec3f {
+    let found = background_found(origin, direction);
     if background.mapped != 0u {
         return background_radiance(found.xyz);
     }

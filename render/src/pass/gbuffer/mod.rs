@@ -32,7 +32,7 @@ pub fn depth_state(write: bool) -> wgpu::DepthStencilState {
 
 /// The targets of one size.
 pub struct GBuffer {
-    /// Packed words, see `texel.wgsl`.
+    /// Packed words, see `texel.wgsl`. The second ones are those of the catcher where there is no surface.
     pub words: [wgpu::TextureView; 4],
     /// Reversed depth.
     pub depth: wgpu::TextureView,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{self, Document};
 use burnish_core::file::{PictureFormat, read_picture, write_picture};
+use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::measure::{PIXELS_PER_DEGREE, flip};
 use burnish_core::picture::Picture;
 use burnish_render::{Gpu, Renderer, View};
@@ -40,6 +41,9 @@ pub struct Args {
     /// Exit with 1 when the mean FLIP error is larger, 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = value::number(0.0, 1.0), requires = "compare")]
     threshold: f32,
+    /// What is shown of the picture: picture, false-color (stops about middle grey) or clipping (marks of it)
+    #[arg(long, value_name = "MODE", default_value = "picture", value_parser = str::parse::<DisplayMode>)]
+    display: DisplayMode,
     /// Bring a panel of the window to the front; repeatable
     #[arg(long, value_name = "NAME", requires = "ui", value_parser = panel)]
     panel: Vec<Pane>,
@@ -64,7 +68,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     check(&args)?;
     let session = args.document.as_deref().map(|scene| open(scene, err)).transpose()?;
     let (picture, tone, exposure) = match session {
-        Some(session) if !args.ui => viewport(&session, args.size, err)?,
+        Some(session) if !args.ui => shown(args.display, viewport(&session, args.size, err)?),
         session => (window(&args, session)?, ToneMap::None, 0.0),
     };
     write_picture(&picture, &args.out, tone, exposure).map_err(Failure::resources)?;
@@ -75,11 +79,22 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     }
 }
 
+/// The picture in a mode of the display, with the display transform that is still to be done.
+fn shown(mode: DisplayMode, (picture, tone, exposure_ev): (Picture, ToneMap, f32)) -> (Picture, ToneMap, f32) {
+    match mode {
+        DisplayMode::Picture => (picture, tone, exposure_ev),
+        _ => (displayed(&picture, mode, tone, exposure_ev), ToneMap::None, 0.0),
+    }
+}
+
 /// Refuses what would only fail after the work.
 fn check(args: &Args) -> Result<(), Failure> {
     let is_png = PictureFormat::of(&args.out) == Ok(PictureFormat::Png);
     if args.ui && !is_png {
         return Err(Failure::usage("--ui writes a .png; name --out so"));
+    }
+    if args.display != DisplayMode::Picture && !is_png {
+        return Err(Failure::usage(format!("--display {} is for a screen; name --out .png", args.display.id())));
     }
     if let Some(folder) = args.out.parent().filter(|f| !f.as_os_str().is_empty() && !f.is_dir()) {
         let (file, folder) = (args.out.display(), folder.display());
@@ -170,6 +185,7 @@ fn window(args: &Args, session: Option<Session>) -> Result<Picture, Failure> {
         let found = found.map_err(|e| Failure::usage(format!("--select: {e}")))?;
         workbench.session_mut().selection.material = found.first().copied().unwrap_or_default();
     }
+    workbench.aids_mut().mode = args.display;
     for pane in &args.panel {
         workbench.show_panel(*pane);
     }

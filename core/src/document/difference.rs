@@ -36,7 +36,7 @@ pub enum Place {
     /// What the eye sees behind everything: colour, blur, ground.
     Background,
     /// Whether the sun of the environment is a light.
-    SunSplit,
+    Sun,
     /// The lighting method.
     Method,
     /// A setting of the lighting method, by its key.
@@ -148,8 +148,10 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
         all.insert(Place::Made, (value, words));
     }
     all.insert(Place::Background, background(environment));
-    let split = environment.sun_split;
-    all.insert(Place::SunSplit, (Some(Value::from(split)), if split { "a light" } else { "in the map" }.into()));
+    let (split, strength) = (environment.sun_split, environment.sun_strength);
+    let words = if split { "a light" } else { "in the map" };
+    let words = if strength == 1.0 { words.into() } else { format!("{words}, times {}", digits(strength)) };
+    all.insert(Place::Sun, (serde_json::to_value((split, strength)).ok(), words));
     let lighting = &document.lighting;
     all.insert(Place::Method, text(&lighting.method));
     for (key, value) in &lighting.settings {
@@ -244,7 +246,7 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Light(_) => "as the model".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
         Place::Reference(key) => default(reference::PARAMS, key).unwrap_or_default(),
-        Place::Rotation | Place::Strength | Place::Tint | Place::Background | Place::SunSplit => String::new(),
+        Place::Rotation | Place::Strength | Place::Tint | Place::Background | Place::Sun => String::new(),
         Place::Method | Place::Camera | Place::Exposure | Place::Tone => String::new(),
     }
 }
@@ -255,7 +257,7 @@ fn group(place: &Place) -> String {
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
         Place::Light(_) => "Lights".into(),
         Place::Map | Place::Rotation | Place::Strength | Place::Tint => "Environment".into(),
-        Place::Made | Place::Background | Place::SunSplit => "Environment".into(),
+        Place::Made | Place::Background | Place::Sun => "Environment".into(),
         Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
         Place::Reference(_) => "Reference".into(),
         Place::Camera | Place::Exposure | Place::Tone => "View".into(),
@@ -279,7 +281,7 @@ fn label(place: &Place) -> String {
         Place::Tint => "Tint".into(),
         Place::Made => "Made map".into(),
         Place::Background => "Background".into(),
-        Place::SunSplit => "Sun".into(),
+        Place::Sun => "Sun".into(),
         Place::Method => "Method".into(),
         Place::Lighting(key) => of(setting_of_any_method(key), key),
         Place::Override(object) => format!("Method of {object}"),

@@ -42,6 +42,9 @@ pub struct EnvironmentEntry {
     /// The sun of the map becomes a light.
     #[serde(default, skip_serializing_if = "is_default")]
     pub sun_split: bool,
+    /// Factor on the light of that sun, or of the sky's, 0 to 1e6: files cut the brightest off.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub sun_strength: f64,
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
@@ -170,6 +173,10 @@ pub struct SoftBoxEntry {
     pub other: Map<String, Value>,
 }
 
+fn is_one(factor: &f64) -> bool {
+    *factor == 1.0
+}
+
 fn white() -> [f64; 3] {
     [1.0; 3]
 }
@@ -190,6 +197,7 @@ impl Default for EnvironmentEntry {
             background_blur_deg: 0.0,
             ground: None,
             sun_split: false,
+            sun_strength: 1.0,
             other: Map::new(),
         }
     }
@@ -318,6 +326,7 @@ impl EnvironmentEntry {
             ("rotation_deg", self.rotation_deg, -1e6..=1e6),
             ("strength", self.strength, 0.0..=1e6),
             ("background_blur_deg", self.background_blur_deg, 0.0..=90.0),
+            ("sun_strength", self.sun_strength, 0.0..=1e6),
         ];
         numbers.extend(self.tint.map(|v| ("tint", v, 0.0..=1e6)));
         if let BackgroundEntry::Color(color) = &self.background {

@@ -30,7 +30,7 @@ fn an_entry_of_before_is_read_and_written_as_it_was() {
 fn entries_are_read_as_they_were_written_with_what_is_not_known() {
     let written = json!({
         "rotation_deg": 0.0, "strength": 1.0, "tint": [1.0, 0.5, 0.25], "background": { "color": [0.0, 0.0, 0.1] },
-        "background_blur_deg": 5.0, "sun_split": true,
+        "background_blur_deg": 5.0, "sun_split": true, "sun_strength": 4.0,
         "ground": { "height": 2.0, "radius": 30.0, "level": 0.5, "shadows": false, "later": 1 },
         "made": { "studio": { "top": [1.0, 1.0, 1.0], "horizon": [0.0, 0.0, 0.0], "bottom": [0.0, 0.0, 0.0],
             "rows": 64, "later": 2, "boxes": [{
@@ -55,6 +55,7 @@ fn numbers_out_of_range_are_named() {
         (json!({ "strength": -1.0 }), "environment.strength"),
         (json!({ "tint": [1.0, -1.0, 1.0] }), "environment.tint"),
         (json!({ "background_blur_deg": 91.0 }), "background_blur_deg"),
+        (json!({ "sun_strength": -1.0 }), "environment.sun_strength"),
         (json!({ "ground": { "height": 5.0, "radius": 5.0 } }), "ground.radius"),
         (json!({ "made": { "sky": { "turbidity": 1.0 } } }), "made.sky.turbidity"),
         (json!({ "made": { "studio": { "boxes": [{ "softness": 2.0 }] } } }), "boxes.softness"),
@@ -121,4 +122,9 @@ fn a_sun_is_split_out_and_a_ground_lies_under_the_scene() {
     assert!(scene.environment.as_ref().unwrap().texels.iter().all(|t| t.max_element() < 1.01));
     let ground = scene.background.ground.unwrap();
     assert!(ground.shadows && (ground.middle.y - scene.bounds().min.y).abs() < 1e-6);
+    let mut brighter = Document::clone(&document);
+    brighter.environment.sun_strength = 8.0;
+    let again = resolve(&brighter, &sources, &mut Curves::default()).scene;
+    assert!((again.lights.last().unwrap().intensity - 8.0 * sun.intensity).length() < 1e-5 * sun.intensity.length());
+    assert_eq!(again.environment.as_ref().map(|map| map.scale()), scene.environment.as_ref().map(|map| map.scale()));
 }

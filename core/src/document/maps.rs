@@ -103,7 +103,10 @@ impl Maps {
         {
             suns.push(sky.model().sun().of(&lit).light("Sun of the sky"));
         }
-        suns.iter_mut().for_each(|sun| sun.camera = seen);
+        for sun in &mut suns {
+            sun.camera = seen;
+            sun.intensity *= entry.sun_strength.max(0.0) as f32;
+        }
         scene.lights.extend(suns);
         scene.environment = Some(Arc::new(lit));
     }

@@ -17,13 +17,15 @@ const SIZE: [f32; 2] = [1100.0, 720.0];
 /// Seeds in the suite; `BURNISH_SEEDS` asks for more.
 const SEEDS: u64 = 3;
 /// What would leave the test: other documents, files elsewhere, dialogs of the system, minutes of measuring.
-const LEFT_ALONE: [&str; 15] = [
+const LEFT_ALONE: [&str; 17] = [
     "Default workbench",
     "Open",
     "Open...",
     "Save",
     "Save as...",
     "Save image...",
+    "Save environment...",
+    "Export...",
     "Browse...",
     "Quit",
     "Start page",
@@ -34,8 +36,15 @@ const LEFT_ALONE: [&str; 15] = [
     "Delete preset",
     "Measure",
 ];
-const COMMANDS_LEFT_ALONE: [Command; 6] =
-    [Command::Start, Command::Open, Command::Save, Command::SaveAs, Command::SaveImage, Command::Quit];
+const COMMANDS_LEFT_ALONE: [Command; 7] = [
+    Command::Start,
+    Command::Open,
+    Command::Save,
+    Command::SaveAs,
+    Command::SaveImage,
+    Command::SaveEnvironment,
+    Command::Quit,
+];
 const TEXTS: [&str; 9] =
     ["", "0.5", "gold", "-1e9", "nan", "#ff8800", "a long name with spaces", "\u{e9}\u{df}", "1e400"];
 

@@ -179,7 +179,7 @@ fn lit_otherwise() {
     let mut bench = Bench::new(Setup {
         name: "reference-otherwise",
         scene: Some("gallery:ball"),
-        size: [1280.0, 1400.0],
+        size: [1280.0, 2000.0],
         drawn: false,
     });
     let key = bench.session().resolved().object_keys[0].clone();

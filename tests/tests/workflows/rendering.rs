@@ -174,6 +174,7 @@ pub fn readme_examples_run() {
         "docs/images/workbench.png",
         "docs/images/window.png",
         "docs/images/light.png",
+        "docs/images/lights.png",
         "copper.png",
         "hammered.png",
         "workbench.exr",

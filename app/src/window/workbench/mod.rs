@@ -213,6 +213,11 @@ impl Workbench {
         &self.chart
     }
 
+    /// How the picture is looked at, for those who choose it beside the window.
+    pub fn aids_mut(&mut self) -> &mut Aids {
+        &mut self.aids
+    }
+
     /// How the picture is looked at.
     pub fn aids(&self) -> &Aids {
         &self.aids

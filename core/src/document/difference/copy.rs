@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::{Part, Place};
-use crate::document::{Assigned, Assignment, Document, Side, Snapshot};
+use crate::document::{Assigned, Assignment, Document, EnvironmentEntry, Side, Snapshot};
 
 impl Document {
     /// Lets a side take over what another state has in a place. The document itself changes where the side shows it as it
@@ -53,7 +53,10 @@ impl Document {
                 to.background_blur_deg = from.background_blur_deg;
                 to.ground.clone_from(&from.ground);
             }
-            Place::SunSplit => self.environment.sun_split = from.environment.sun_split,
+            Place::Sun => {
+                let EnvironmentEntry { sun_split, sun_strength, .. } = from.environment;
+                (self.environment.sun_split, self.environment.sun_strength) = (sun_split, sun_strength);
+            }
             Place::Method => self.lighting.choose(&from.lighting.method),
             Place::Lighting(key) => setting(&mut self.lighting.settings, &from.lighting.settings, key),
             Place::Override(key) => match from.lighting.overrides.get(key) {

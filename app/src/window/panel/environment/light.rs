@@ -48,6 +48,14 @@ const SUN: ParamSpec = spec(
      set where the file has cut it off.",
 );
 
+pub(super) const SUN_STRENGTH: ParamSpec = spec(
+    "sun-strength",
+    "Sun strength",
+    "",
+    ParamKind::Number { min: 0.0, max: 1000.0, default: 1.0 },
+    "Factor on the light of the sun alone: many files cut it off.",
+);
+
 /// Where the map comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -169,6 +177,7 @@ impl LightSection {
             document.environment.sun_split = value == ParamValue::Toggle(true);
         });
         if split {
+            strength_ui(ui, context.session);
             let text = sun_text(context.session);
             ui.add(egui::Label::new(egui::RichText::new(text).small().weak()).wrap());
         }
@@ -211,6 +220,14 @@ fn source_ui(ui: &mut egui::Ui, session: &Session) {
     ui.add(egui::Label::new(egui::RichText::new(name).strong()).truncate()).on_hover_text(from);
     let hover = "Equirectangular map of radiance. It is also the background of the picture.";
     ui.weak(format!("{} x {} pixels, also the background", map.width, map.height)).on_hover_text(hover);
+}
+
+/// The row of the sun's own strength.
+pub(super) fn strength_ui(ui: &mut egui::Ui, session: &mut Session) {
+    let strength = ParamValue::Number(session.document().environment.sun_strength);
+    row_ui(ui, session, (&SUN_STRENGTH, "Sun strength"), strength, |document, value| {
+        document.environment.sun_strength = number(value);
+    });
 }
 
 /// Where the map of the document comes from.

@@ -6,7 +6,7 @@ use burnish_core::param::{ParamSpec, ParamValue};
 use burnish_core::scene::environment::TURBIDITY;
 use eframe::egui;
 
-use super::{number, row_ui};
+use super::{light, number, row_ui};
 use crate::window::panel::row::spec;
 use crate::window::session::Session;
 
@@ -58,10 +58,13 @@ pub fn ui(ui: &mut egui::Ui, session: &mut Session, sky: &SkyEntry) {
     row(&ELEVATION, ParamValue::Number(sky.elevation_deg), |sky, value| sky.elevation_deg = number(value));
     row(&AZIMUTH, ParamValue::Number(sky.azimuth_deg), |sky, value| sky.azimuth_deg = number(value));
     row(&HAZE, ParamValue::Number(sky.turbidity), |sky, value| sky.turbidity = number(value));
-    row(&SUN, ParamValue::Toggle(sky.sun), |sky, value| sky.sun = value == ParamValue::Toggle(true));
     row(&GROUND, ParamValue::Color(sky.ground), |sky, value| {
         if let ParamValue::Color(color) = value {
             sky.ground = color;
         }
     });
+    row(&SUN, ParamValue::Toggle(sky.sun), |sky, value| sky.sun = value == ParamValue::Toggle(true));
+    if sky.sun {
+        light::strength_ui(ui, session);
+    }
 }

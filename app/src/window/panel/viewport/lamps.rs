@@ -13,6 +13,9 @@ use crate::window::session::Session;
 const MARK: f32 = 5.0;
 /// Points that take hold of it.
 const GRIP: f32 = 18.0;
+/// Points between the edge of the picture and the arrow toward a light beyond it, and the size of the arrow.
+const EDGE: f32 = 16.0;
+const ARROW: f32 = 9.0;
 /// Sides of a circle.
 const AROUND: usize = 32;
 /// Length of the line that shows where a light without a size shines, points.
@@ -26,8 +29,11 @@ pub fn ui(ui: &mut egui::Ui, sight: &Sight, session: &mut Session) {
         if !light.shape.has_place() && !chosen {
             continue;
         }
-        let Some(at) = sight.project(light.place()).filter(|at| sight.rect.contains(*at)) else { continue };
         let color = mark_color(ui, light, chosen);
+        if let Some((at, toward)) = sight.beyond(light.place(), EDGE).filter(|_| chosen && light.shape.has_place()) {
+            arrow_ui(ui, sight, at, toward, color, &light.name);
+        }
+        let Some(at) = sight.project(light.place()).filter(|at| sight.rect.contains(*at)) else { continue };
         let painter = ui.painter_at(sight.rect);
         let stroke = |width: f32, color: Color32| Stroke::new(width, color);
         for line in outline(sight, light) {
@@ -47,6 +53,21 @@ pub fn ui(ui: &mut egui::Ui, sight: &Sight, session: &mut Session) {
     if let Some((name, add)) = clicked {
         lights::select(session, &name, add);
     }
+}
+
+/// Shows where a selected light is that is not in the picture.
+fn arrow_ui(ui: &egui::Ui, sight: &Sight, at: Pos2, toward: Vec2, color: Color32, name: &str) {
+    let across = Vec2::new(-toward.y, toward.x);
+    let corners = vec![at + ARROW * toward, at - 0.6 * ARROW * (toward - across), at - 0.6 * ARROW * (toward + across)];
+    let painter = ui.painter_at(sight.rect);
+    painter.add(egui::Shape::convex_polygon(corners, color, Stroke::new(1.5, SHADE)));
+    let grip = ui.interact(
+        Rect::from_center_size(at, Vec2::splat(GRIP)),
+        ui.scope_id().with(("beyond", name)),
+        Sense::hover(),
+    );
+    grip.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{name} is out of the picture")));
+    grip.on_hover_text(format!("{name} is out of the picture this way."));
 }
 
 fn mark_color(ui: &egui::Ui, light: &LightEntry, chosen: bool) -> Color32 {

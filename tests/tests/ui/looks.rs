@@ -65,7 +65,7 @@ fn every_panel() {
 }
 
 fn method_panel() {
-    let setup = Setup { name: "method", scene: Some(SCENE), size: [380.0, 1140.0], drawn: true };
+    let setup = Setup { name: "method", scene: Some(SCENE), size: [380.0, 1560.0], drawn: true };
     let mut bench = Bench::new(setup);
     for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Environment) {
         bench.workbench().show_panel(pane);

@@ -34,7 +34,11 @@ pub(super) fn number_ui(
         .clamping(SliderClamping::Edits);
     let slider = ui.add(slider).labelled_by(name.id).on_hover_text(hover);
     // Longer units stand in the hover text.
-    let suffix = if matches!(spec.unit.len(), 1..=3) { format!(" {}", spec.unit) } else { String::new() };
+    let suffix = match spec.unit {
+        "deg" => "°".into(),
+        unit if matches!(unit.len(), 1..=3) => format!(" {unit}"),
+        _ => String::new(),
+    };
     let speed = if logarithmic { 0.01 * number.abs().max(1.0) } else { (max - min) / 250.0 };
     let field = DragValue::new(&mut new)
         .range(min..=max)

@@ -6,12 +6,6 @@ const AREA_NUMBERS: u32 = 4u;
 const AREA_STRIDE: u32 = AREA_NODES * AREA_NODES * AREA_NUMBERS;
 // sqrt(alpha_min), where the axis of the width starts.
 const AREA_ROUGHNESS_MIN: f32 = 0.03162278;
-const AREA_CORNERS_MAX: u32 = 16u;
-// Sides of the polygon that stands for a sphere; its radius over that of the circle of equal area.
-const AREA_SIDES: u32 = 12u;
-const AREA_WIDENING: f32 = 1.0233267;
-// Height over the horizon of the corners of the whole hemisphere.
-const AREA_HORIZON: f32 = 1e-4;
 // Most by which a small light is raised over what the cosines give.
 const AREA_RATIO_MAX: f32 = 4.0;
 
@@ -20,26 +14,6 @@ const AREA_PARTS: u32 = 8u;
 const AREA_BENDING: f32 = 1.2;
 const AREA_STREAK: f32 = 0.6;
 const AREA_PART_WIDTH: f32 = 0.8;
-
-const AREA_NOTHING: u32 = 0u;
-const AREA_RECTANGLE: u32 = 1u;
-const AREA_CAP: u32 = 2u;
-const AREA_EVERYWHERE: u32 = 3u;
-
-// What shines. Rectangle: its middle and half its sides, cross(across, up) pointing away from the point. Cap: unit axis,
-// and the sine of half its angle.
-struct AreaShape {
-    center: vec3f,
-    kind: u32,
-    across: vec3f,
-    sine: f32,
-    up: vec3f,
-}
-
-struct AreaPolygon {
-    corners: array<vec3f, AREA_CORNERS_MAX>,
-    count: u32,
-}
 
 // A clamped cosine under a matrix, see the Rust twin.
 struct AreaCosines {
@@ -50,126 +24,6 @@ struct AreaCosines {
     across: f32,
     shear: f32,
     skew: f32,
-}
-
-fn area_nothing() -> AreaShape {
-    return AreaShape(vec3f(0.0), AREA_NOTHING, vec3f(0.0), 0.0, vec3f(0.0));
-}
-
-// Middle relative to the point, unit direction and side, full sizes.
-fn area_rectangle(center: vec3f, direction: vec3f, across: vec3f, size: vec2f) -> AreaShape {
-    if !(dot(center, direction) < 0.0) || !(min(size.x, size.y) > 0.0) {
-        return area_nothing();
-    }
-    let up = cross(across, direction);
-    return AreaShape(center, AREA_RECTANGLE, 0.5 * size.x * across, 0.0, 0.5 * size.y * up);
-}
-
-fn area_cap(axis: vec3f, sine: f32) -> AreaShape {
-    return AreaShape(axis, AREA_CAP, vec3f(0.0), sine, vec3f(0.0));
-}
-
-fn area_sphere(center: vec3f, radius: f32) -> AreaShape {
-    let distance = length(center);
-    if !(radius > 0.0) {
-        return area_nothing();
-    }
-    if distance <= radius {
-        return AreaShape(vec3f(0.0), AREA_EVERYWHERE, vec3f(0.0), 1.0, vec3f(0.0));
-    }
-    return area_cap(center / distance, radius / distance);
-}
-
-fn area_local(shape: AreaShape, frame: Frame) -> AreaShape {
-    let across = frame_to_local(frame, shape.across);
-    let up = frame_to_local(frame, shape.up);
-    return AreaShape(frame_to_local(frame, shape.center), shape.kind, across, shape.sine, up);
-}
-
-// What of a shape is above the horizon.
-fn area_polygon(shape: AreaShape) -> AreaPolygon {
-    var polygon: AreaPolygon;
-    polygon.count = 0u;
-    if shape.kind == AREA_RECTANGLE {
-        let low = shape.center - shape.up;
-        let high = shape.center + shape.up;
-        polygon.corners[0] = low - shape.across;
-        polygon.corners[1] = low + shape.across;
-        polygon.corners[2] = high + shape.across;
-        polygon.corners[3] = high - shape.across;
-        polygon.count = 4u;
-    } else if shape.kind == AREA_CAP {
-        let frame = frame_new(shape.center);
-        let cosine = sqrt(max((1.0 - shape.sine) * (1.0 + shape.sine), 0.0));
-        for (var i = 0u; i < AREA_SIDES; i++) {
-            let phi = 2.0 * PI * f32(i) / f32(AREA_SIDES);
-            let around = vec2f(cos(phi), sin(phi)) * (AREA_WIDENING * shape.sine);
-            polygon.corners[i] = frame_to_world(frame, vec3f(around, cosine));
-        }
-        polygon.count = AREA_SIDES;
-    } else if shape.kind == AREA_EVERYWHERE {
-        polygon.corners[0] = vec3f(1.0, 0.0, AREA_HORIZON);
-        polygon.corners[1] = vec3f(0.0, 1.0, AREA_HORIZON);
-        polygon.corners[2] = vec3f(-1.0, 0.0, AREA_HORIZON);
-        polygon.corners[3] = vec3f(0.0, -1.0, AREA_HORIZON);
-        polygon.count = 4u;
-        return polygon;
-    }
-    return area_clipped(&polygon);
-}
-
-// What is above the plane z = 0.
-fn area_clipped(polygon: ptr<function, AreaPolygon>) -> AreaPolygon {
-    var left: AreaPolygon;
-    left.count = 0u;
-    let count = (*polygon).count;
-    if count == 0u {
-        return left;
-    }
-    var start = (*polygon).corners[count - 1u];
-    for (var i = 0u; i < count; i++) {
-        let end = (*polygon).corners[i];
-        if (start.z > 0.0) != (end.z > 0.0) && left.count < AREA_CORNERS_MAX {
-            let crossing = start + (end - start) * (start.z / (start.z - end.z));
-            left.corners[left.count] = vec3f(crossing.xy, 0.0);
-            left.count++;
-        }
-        if end.z > 0.0 && left.count < AREA_CORNERS_MAX {
-            left.corners[left.count] = end;
-            left.count++;
-        }
-        start = end;
-    }
-    return left;
-}
-
-// Angle in [0, pi] whose sine and cosine are in this ratio; sine >= 0. Abramowitz and Stegun 1964, 4.4.49.
-fn area_angle(sine: f32, cosine: f32) -> f32 {
-    let x = min(sine, abs(cosine)) / max(max(sine, abs(cosine)), 1e-30);
-    let x2 = x * x;
-    let tail = 0.10656264 + x2 * (-0.07528964 + x2 * (0.042909613 + x2 * (-0.016165737 + x2 * 0.0028662257)));
-    let acute = x * (1.0 + x2 * (-0.33333145 + x2 * (0.19993551 + x2 * (-0.142089 + x2 * tail))));
-    let first = select(acute, 0.5 * PI - acute, sine > abs(cosine));
-    return select(first, PI - first, cosine < 0.0);
-}
-
-// Integral of the direction over the solid angle.
-fn area_flux(polygon: ptr<function, AreaPolygon>) -> vec3f {
-    let count = (*polygon).count;
-    var sum = vec3f(0.0);
-    if count == 0u {
-        return sum;
-    }
-    var start = (*polygon).corners[count - 1u];
-    for (var i = 0u; i < count; i++) {
-        let end = (*polygon).corners[i];
-        // The cross product with the difference keeps the digits of short edges.
-        let normal = cross(start, end - start);
-        let sine = length(normal);
-        sum += normal * (area_angle(sine, dot(start, end)) / max(sine, 1e-30));
-        start = end;
-    }
-    return 0.5 * sum;
 }
 
 fn area_node(first: u32, row: u32, column: u32) -> vec4f {
@@ -292,18 +146,37 @@ fn area_part(index: u32, wo: vec3f, alpha: vec2f, masking: u32) -> AreaPart {
     return AreaPart(frame, area_cosines(frame_to_local(frame, wo), widths, masking), max(dot(wo, normal), 0.0));
 }
 
-// Irradiance vector of a polygon on cosines, before M.
+// Irradiance vector of a polygon on cosines, before M: what of it is above the horizon of the frame, and there above that of
+// the cosines. Edge by edge, last those that close it along the horizons.
 fn area_filled(lobe: AreaCosines, frame: Frame, polygon: ptr<function, AreaPolygon>) -> vec3f {
-    var local = *polygon;
-    for (var i = 0u; i < local.count; i++) {
-        local.corners[i] = frame_to_local(frame, local.corners[i]);
+    let count = (*polygon).count;
+    var sum = vec3f(0.0);
+    if count == 0u {
+        return sum;
     }
-    var flat = area_clipped(&local);
-    for (var i = 0u; i < flat.count; i++) {
-        flat.corners[i] = area_flatten(lobe, flat.corners[i]);
+    var near: AreaClip;
+    var flat: AreaClip;
+    var start = frame_to_local(frame, (*polygon).corners[count - 1u]);
+    for (var i = 0u; i < count + 2u; i++) {
+        near.start = near.leaves;
+        near.end = near.enters;
+        if i < count {
+            near.start = start;
+            near.end = frame_to_local(frame, (*polygon).corners[i]);
+            start = near.end;
+            area_clip(&near);
+        }
+        flat.start = area_flatten(lobe, near.start);
+        flat.end = area_flatten(lobe, near.end);
+        if i <= count {
+            area_clip(&flat);
+        } else {
+            flat.start = flat.leaves;
+            flat.end = flat.enters;
+        }
+        sum += area_edge(flat.start, flat.end);
     }
-    var left = area_clipped(&flat);
-    return area_flux(&left);
+    return sum;
 }
 
 // How much of a lobe a polygon fills, and from where: unit, the mean direction of the light that is reflected, about.

@@ -30,7 +30,7 @@ pub use polygon::{CORNERS_MAX, Polygon};
 /// The WGSL twin.
 pub static WGSL: Leaf = Leaf {
     name: "area",
-    source: include_str!("area.wgsl"),
+    source: concat!(include_str!("polygon.wgsl"), "\n", include_str!("area.wgsl")),
     needs: &[&layered::WGSL],
     externs: "fn area_entry(index: u32) -> f32 { return 0.5; }",
 };

@@ -83,6 +83,8 @@ pub struct ClassicalPass {
     device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
     format: wgpu::TextureFormat,
+    /// The driver compiles for the processor.
+    software: bool,
     layouts: [wgpu::BindGroupLayout; 4],
     module: OnceLock<wgpu::ShaderModule>,
     /// By their variants.
@@ -117,6 +119,7 @@ impl ClassicalPass {
         ClassicalPass {
             device: device.clone(),
             format,
+            software: gpu.is_software(),
             layouts: [scene_layout.clone(), layout.clone(), light_layout.clone(), background_layout.clone()],
             layout,
             module: OnceLock::new(),
@@ -130,7 +133,8 @@ impl ClassicalPass {
             let module = self.module.get_or_init(|| shader::CLASSICAL.module(&self.device));
             let layouts = self.layouts.each_ref().map(Some);
             let mut constants = frame_constants(self.format);
-            constants.extend([("sampled", f64::from(u8::from(sampled))), ("areas", f64::from(u8::from(areas)))]);
+            let switches = [("sampled", sampled), ("areas", areas), ("discards", self.software)];
+            constants.extend(switches.map(|(name, on)| (name, f64::from(u8::from(on)))));
             fullscreen_pipeline(&self.device, "classical", &layouts, module, self.format, &constants)
         })
     }

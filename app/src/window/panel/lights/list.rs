@@ -50,12 +50,13 @@ fn buttons_ui(ui: &mut egui::Ui, session: &mut Session) {
         let chosen = !session.selection.lights.is_empty();
         let mut button = |ui: &mut egui::Ui, text: &str, hover: &str, act: LightAct| {
             let button = ui.add_enabled(chosen, egui::Button::new(text));
+            name_widget(&button, &format!("{text} light"));
             if button.on_hover_text(hover).on_disabled_hover_text("Select a light first.").clicked() {
                 lights::act(session, act);
             }
         };
-        button(ui, "Duplicate light", "A copy in the same place.", LightAct::Duplicate);
-        button(ui, "Delete light", "Remove the selected lights.", LightAct::Remove);
+        button(ui, "Duplicate", "A copy in the same place.", LightAct::Duplicate);
+        button(ui, "Delete", "Remove the selected lights.", LightAct::Remove);
         ui.add_enabled_ui(chosen, |ui| {
             ui.menu_button("Mirror", |ui| {
                 for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {

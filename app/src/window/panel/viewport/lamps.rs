@@ -13,8 +13,10 @@ use crate::window::session::Session;
 const MARK: f32 = 5.0;
 /// Points that take hold of it.
 const GRIP: f32 = 18.0;
-/// Points between the edge of the picture and the arrow toward a light beyond it, and the size of the arrow.
+/// Points between the edges of the picture and the arrow toward a light beyond it: at the left and above are buttons.
+const BESIDE: Vec2 = Vec2::new(98.0, 46.0);
 const EDGE: f32 = 16.0;
+/// Size of the arrow.
 const ARROW: f32 = 9.0;
 /// Sides of a circle.
 const AROUND: usize = 32;
@@ -24,13 +26,14 @@ const AIM: f32 = 46.0;
 /// Shows the marks of all lights with a place, and of selected suns.
 pub fn ui(ui: &mut egui::Ui, sight: &Sight, session: &mut Session) {
     let mut clicked = None;
+    let free = Rect::from_min_max(sight.rect.min + BESIDE, sight.rect.max - Vec2::splat(EDGE));
     for (place, light) in lights::entries(session).iter().enumerate() {
         let chosen = session.selection.lights.contains(&light.name);
         if !light.shape.has_place() && !chosen {
             continue;
         }
         let color = mark_color(ui, light, chosen);
-        if let Some((at, toward)) = sight.beyond(light.place(), EDGE).filter(|_| chosen && light.shape.has_place()) {
+        if let Some((at, toward)) = sight.beyond(light.place(), free).filter(|_| chosen && light.shape.has_place()) {
             arrow_ui(ui, sight, at, toward, color, &light.name);
         }
         let Some(at) = sight.project(light.place()).filter(|at| sight.rect.contains(*at)) else { continue };

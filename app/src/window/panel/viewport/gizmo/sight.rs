@@ -21,18 +21,17 @@ impl Sight {
         place.is_finite().then_some(place)
     }
 
-    /// Where on the edge of the picture, `margin` points from it, something lies that is not in it, and the unit direction
-    /// toward it; `None` for what is in the picture.
-    pub fn beyond(&self, world: Vec3, margin: f32) -> Option<(Pos2, Vec2)> {
-        let inner = self.rect.shrink(margin);
-        if self.project(world).is_some_and(|place| inner.contains(place)) {
+    /// Where on the edge of a part of the picture something lies that is not in the picture, and the unit direction toward
+    /// it; `None` for what is in the picture.
+    pub fn beyond(&self, world: Vec3, inner: Rect) -> Option<(Pos2, Vec2)> {
+        if self.project(world).is_some_and(|place| self.rect.contains(place)) {
             return None;
         }
         let view = self.camera.world_from_view.inverse().transform_point3(world);
         let toward = vec2(view.x, -view.y);
         // Straight behind the camera any way is as far: below, where one would look for it last.
         let toward = if toward.length() > 1e-6 { toward.normalized() } else { vec2(0.0, 1.0) };
-        let half = 0.5 * inner.size();
+        let half = (0.5 * inner.size()).max(Vec2::ZERO);
         let reach = (half.x / toward.x.abs().max(1e-6)).min(half.y / toward.y.abs().max(1e-6));
         Some((inner.center() + reach * toward, toward))
     }
@@ -93,18 +92,19 @@ mod tests {
                 let moved = sight.project(world + right * step).unwrap() - sight.project(world).unwrap();
                 assert!((moved.length() - 1.0).abs() < 1e-2, "{moved:?}");
             }
+            let inner = sight.rect.shrink(10.0);
             for (view, toward) in
                 [(Vec3::new(-90.0, 0.0, -2.0), vec2(-1.0, 0.0)), (Vec3::new(0.0, 5.0, 900.0), vec2(0.0, -1.0))]
             {
                 let world = sight.camera.world_from_view.transform_point3(view);
-                if let Some((place, found)) = sight.beyond(world, 10.0) {
+                if let Some((place, found)) = sight.beyond(world, inner) {
                     assert!((found - toward).length() < 1e-3, "{found:?} {toward:?}");
-                    assert!(sight.rect.shrink(9.9).contains(place), "{place:?}");
+                    assert!(inner.expand(0.1).contains(place), "{place:?}");
                 } else {
                     panic!("{view} is not in the picture");
                 }
             }
-            assert!(sight.beyond(Vec3::new(0.0, 0.5, 0.0), 10.0).is_none());
+            assert!(sight.beyond(Vec3::new(0.0, 0.5, 0.0), inner).is_none());
             let behind = sight.camera.world_from_view.transform_point3(Vec3::new(0.0, 0.0, 5.0));
             let is_parallel = matches!(sight.camera.projection, Projection::Orthographic { .. });
             assert_eq!(sight.project(behind).is_some(), is_parallel);

@@ -11,7 +11,7 @@ use crate::area::{apart, floor, live, renderer, traced};
 
 /// Mean |live - traced| over mean traced, of a ground a sixth of its light in shadow: edges by shadow maps, penumbras
 /// by few samples, the noise of the tracer.
-const CAUGHT: f64 = 0.01;
+const CAUGHT: f64 = 0.008;
 /// By how much more the same ground without shadows must differ for the case to tell anything.
 const TELLING: f64 = 3.0;
 const SIZE: UVec2 = UVec2::new(60, 40);

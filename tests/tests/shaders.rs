@@ -5,7 +5,7 @@ use std::f32::consts;
 
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, classical};
+use burnish_core::lighting::{area, classical, impostor};
 use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
@@ -192,6 +192,18 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("BLINN_PHONG_MICROFACET", f64::from(Variant::Microfacet as u32)),
         ],
         "layered" => vec![("LAYERED_GGX", f64::from(layered::GGX))],
+        "impostor" => vec![
+            ("IMPOSTOR_CLASSICAL", impostor::CLASSICAL.into()),
+            ("IMPOSTOR_SPHERE", impostor::SPHERE.into()),
+            ("IMPOSTOR_BOX", impostor::BOX.into()),
+            ("IMPOSTOR_PERPENDICULAR", impostor::PERPENDICULAR.into()),
+            ("IMPOSTOR_SECANT", impostor::SECANT.into()),
+            ("IMPOSTOR_SECANT_FROM_POINT", impostor::SECANT_FROM_POINT.into()),
+            ("IMPOSTOR_FALSE_POSITION", impostor::FALSE_POSITION.into()),
+            ("IMPOSTOR_MIXED", impostor::MIXED.into()),
+            ("IMPOSTOR_MARCH", impostor::MARCH.into()),
+            ("IMPOSTOR_EPSILON", impostor::EPSILON.into()),
+        ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![
             ("MICRO_NORMAL_NONE", f64::from(micro_normal::Kind::None as u32)),

@@ -4,6 +4,7 @@ pub mod area;
 pub mod classical;
 pub mod cube_map;
 pub mod drawing;
+pub mod impostor;
 pub mod layers;
 pub mod method;
 pub mod prepared;
@@ -46,4 +47,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL, &impostor::WGSL];

@@ -48,3 +48,8 @@ fn classical_source(index: u32) -> mat2x3f {
     }
     return mat2x3f(vec3f(-0.64, 0.48, 0.6), vec3f(0.05, 0.1, 0.15));
 }
+
+fn impostor_distance(direction: vec3f) -> f32 {
+    let a = abs(direction);
+    return (1.0 + 0.1 * direction.x * direction.y) / max(a.x, max(a.y, a.z));
+}

@@ -14,6 +14,7 @@ mod ggx;
 mod grid;
 mod ground;
 mod harness;
+mod impostor;
 mod lambert;
 mod layered;
 mod math;
@@ -56,6 +57,7 @@ fn cases() -> Vec<Case> {
     cases.extend(micro_normal::cases());
     cases.extend(area::cases());
     cases.extend(classical::cases());
+    cases.extend(impostor::cases());
     cases
 }
 

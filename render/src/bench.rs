@@ -8,7 +8,7 @@ use std::time::Instant;
 use burnish_core::lighting::classical::{self, FrameSettings};
 use burnish_core::lighting::method::MethodId;
 use burnish_core::material::preset::FormChoice;
-use burnish_core::measure::bench::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
+use burnish_core::measure::bench::{BenchError, FrameTimer, Frames, Preparation, Shot};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::reference::Control;
@@ -64,6 +64,7 @@ struct Opened {
 struct ClassicalFrames {
     renderer: Rc<RefCell<Renderer>>,
     view: View,
+    compared_frames: u32,
     preparation: Preparation,
     control: Control,
 }
@@ -76,6 +77,7 @@ impl FrameTimer for ClassicalTimer {
         let frames = |opened: &Opened| ClassicalFrames {
             renderer: opened.renderer.clone(),
             view: view.clone(),
+            compared_frames: shot.compared_frames,
             preparation: opened.preparation,
             control: self.control.clone(),
         };
@@ -110,7 +112,7 @@ impl Frames for ClassicalFrames {
     }
 
     fn picture(&mut self) -> Result<Picture, BenchError> {
-        let view = View { jitter_frames: COMPARED_FRAMES, ..self.view.clone() };
+        let view = View { jitter_frames: self.compared_frames, ..self.view.clone() };
         let picture =
             self.renderer.borrow_mut().render_while(&view, |_| !self.control.is_cancelled()).map_err(words)?;
         picture.ok_or(BenchError::Cancelled)

@@ -47,6 +47,9 @@ pub struct Args {
     /// Pixels of the pictures
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = value::size)]
     size: UVec2,
+    /// Jittered frames whose mean is compared, 1 to 4096: more where bright edges decide the errors
+    #[arg(long, value_name = "N", default_value_t = bench::COMPARED_FRAMES, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    frames: u32,
     /// Paths through a pixel of the reference, 2 to 16777216
     #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     samples: u32,
@@ -193,7 +196,8 @@ fn shot(
     let exposure_ev = document.as_ref().map_or(0.0, |document| document.view.exposure_ev as f32);
     let metals = document.iter().flat_map(|document| &document.presets);
     let metals = metals.map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
-    let shot = Shot { name, scene: Arc::new(scene), camera, size: args.size, exposure_ev, metals };
+    let (scene, size, compared_frames) = (Arc::new(scene), args.size, args.frames);
+    let shot = Shot { name, scene, camera, size, exposure_ev, compared_frames, metals };
     for id in shot.unknown_metals() {
         let (name, id) = (printable(&shot.name), printable(id));
         writeln!(err, "burnish: notice: {name}: the n and k of `{id}` are not known; its form is not changed")?;

@@ -44,6 +44,7 @@ fn record(method: &str, samples: u32, ms: f64, relmse: f64) -> Record {
         frame_secs: 1e-3 * ms,
         calibration_secs: 8.7e-3,
         frames: 60,
+        compared_frames: 16,
         errors: [relmse * 0.7, relmse, relmse * 0.4].map(|relmse| Some(errors(relmse))),
         floors: [Some(floor); 3],
         truth_samples: 256,

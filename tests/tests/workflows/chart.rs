@@ -49,6 +49,15 @@ pub fn a_chart_is_the_same_twice_and_kept_in_between() {
     assert_eq!(errors(&fresh), errors(&first));
     assert_ne!(fresh, first, "times of another run are not the same to the last digit");
 
+    // Of fewer frames the mean is another, and that of the paths is the same.
+    let (few, opened) = measure("e.csv", &["--frames", "2"]);
+    assert!(opened && errors(&few)[1..3].iter().zip(&errors(&first)[1..3]).all(|(few, many)| few != many), "{few}");
+    assert_eq!(errors(&few)[3], errors(&first)[3]);
+    let frames = |table: &str| {
+        table.lines().nth(1).and_then(|line| line.split(',').nth(column("compared_frames")).map(String::from))
+    };
+    assert_eq!([frames(&few), frames(&first)], ["2", "16"].map(|frames| Some(frames.into())));
+
     // Another truth is measured anew and told.
     assert!(rows[1][column("truth_settings")].is_empty());
     let (direct, opened) = measure("d.csv", &["--truth", "bounces=1", "--truth", "clamp=10"]);

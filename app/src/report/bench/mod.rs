@@ -165,6 +165,7 @@ pub mod tests {
             frame_secs: 1e-3 * ms,
             calibration_secs: 0.01,
             frames: 20,
+            compared_frames: 16,
             errors: [Some(errors), Some(errors), None],
             floors: [Some(floor), Some(floor), None],
             truth_samples: 512,

@@ -14,7 +14,7 @@ use burnish_core::job::{Job, Outcome};
 use burnish_core::lighting;
 use burnish_core::lighting::method::{self, Method, MethodId};
 use burnish_core::measure::Errors;
-use burnish_core::measure::bench::{BenchError, Cache, Record, Region, Shot};
+use burnish_core::measure::bench::{BenchError, COMPARED_FRAMES, Cache, Record, Region, Shot};
 use burnish_core::param::Settings;
 use burnish_core::scene::{Camera, Scene, gallery};
 use eframe::egui;
@@ -247,7 +247,7 @@ fn shot(session: &Session, size: glam::UVec2) -> Shot {
     let name = session.path.as_ref().map_or_else(|| document.scene.clone(), |path| path.to_string_lossy().into_owned());
     let metals = document.presets.iter().map(|metal| (metal.id.clone(), Clone::clone(&**metal))).collect();
     let (camera, exposure_ev) = (document.view.camera.camera(), document.view.exposure_ev as f32);
-    Shot { name, scene, camera, size, exposure_ev, metals }
+    Shot { name, scene, camera, size, exposure_ev, compared_frames: COMPARED_FRAMES, metals }
 }
 
 #[cfg(test)]

@@ -10,6 +10,8 @@ pub mod light;
 mod parts;
 mod polygon;
 #[cfg(test)]
+mod preset_tests;
+#[cfg(test)]
 mod tests;
 
 use std::f32::consts::{FRAC_1_PI, TAU};

@@ -80,6 +80,7 @@ impl Cache {
             "name": shot.name,
             "subject": shot.scene.subject,
             "exposure": shot.exposure_ev.to_bits(),
+            "compared_frames": shot.compared_frames,
             "method": candidate.method.0,
             "settings": candidate.texts(),
             "machine": machine,

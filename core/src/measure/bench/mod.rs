@@ -39,7 +39,7 @@ pub use reference::PathTimer;
 pub use run::{Candidate, Listener, News, measure};
 pub use truth::Truth;
 
-/// Jittered frames whose mean is compared: with it both sides average over the area of a pixel.
+/// Jittered frames whose mean is compared when nothing else is said: with it both sides average over the area of a pixel.
 pub const COMPARED_FRAMES: u32 = 16;
 
 /// What is looked at.
@@ -55,6 +55,8 @@ pub struct Shot {
     pub size: UVec2,
     /// Exposure at which FLIP looks at the pictures.
     pub exposure_ev: f32,
+    /// Jittered frames whose mean is compared; the fewer, the more the edges of highlights differ by chance.
+    pub compared_frames: u32,
     /// Metals that the library of presets does not hold, by id.
     pub metals: BTreeMap<String, Preset>,
 }
@@ -95,7 +97,7 @@ pub trait Frames {
     fn preparation(&self) -> Preparation;
     /// Draws one frame; returns its seconds.
     fn frame(&mut self) -> Result<f64, BenchError>;
-    /// The picture to compare: the mean of [`COMPARED_FRAMES`] jittered frames, or of as many paths as the settings say.
+    /// The picture to compare: the mean of [`Shot::compared_frames`] jittered frames, or of as many paths as the settings say.
     fn picture(&mut self) -> Result<Picture, BenchError>;
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{BenchError, COMPARED_FRAMES, FrameTimer, Frames, Preparation, Shot};
+use super::{BenchError, FrameTimer, Frames, Preparation, Shot};
 use crate::lighting::{Drawing, Method, MethodError, Prepared, classical};
 use crate::param::Settings;
 use crate::picture::Picture;
@@ -24,6 +24,7 @@ struct Points {
     world: World,
     prepared: Prepared,
     view: View,
+    compared_frames: u32,
     preparation: Preparation,
     control: Control,
 }
@@ -47,7 +48,8 @@ impl FrameTimer for PointTimer {
         let view = View { camera: shot.camera.clone(), size: shot.size, seed: SEED };
         let control = self.control.clone();
         let settings = settings.clone();
-        Ok(Box::new(Points { method: self.method, settings, world, prepared, view, preparation, control }))
+        let (method, compared_frames) = (self.method, shot.compared_frames);
+        Ok(Box::new(Points { method, settings, world, prepared, view, compared_frames, preparation, control }))
     }
 }
 
@@ -75,6 +77,6 @@ impl Frames for Points {
     }
 
     fn picture(&mut self) -> Result<Picture, BenchError> {
-        Ok(self.draw(COMPARED_FRAMES)?.picture())
+        Ok(self.draw(self.compared_frames)?.picture())
     }
 }

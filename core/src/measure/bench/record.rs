@@ -52,6 +52,8 @@ pub struct Record {
     pub calibration_secs: f64,
     /// Frames that were timed.
     pub frames: usize,
+    /// Jittered frames whose mean was compared.
+    pub compared_frames: u32,
     /// Errors in each of [`Region::ALL`]; absent where it has no pixels.
     pub errors: [Option<Errors>; 3],
     /// What the noise of the truth adds to each.
@@ -75,7 +77,7 @@ const MEASURES: [Measure; 6] = [
 ];
 
 /// Columns of [`csv`] before those of errors.
-pub const COLUMNS: [&str; 13] = [
+pub const COLUMNS: [&str; 14] = [
     "scene",
     "method",
     "settings",
@@ -86,6 +88,7 @@ pub const COLUMNS: [&str; 13] = [
     "frame_ms",
     "frame_ratio",
     "frames",
+    "compared_frames",
     "truth_samples",
     "truth_settings",
     "under_floor",
@@ -151,6 +154,7 @@ pub fn csv(records: &[Record]) -> String {
             number(1e3 * record.frame_secs),
             number(record.ratio()),
             record.frames.to_string(),
+            record.compared_frames.to_string(),
             record.truth_samples.to_string(),
             quoted(&words(&record.truth_settings)),
             if record.is_under_floor() { "yes" } else { "no" }.to_string(),

@@ -108,6 +108,7 @@ pub fn measure(
             frame_secs: median(&mut entry.secs),
             calibration_secs: median(&mut entry.calibration),
             frames: entry.secs.len(),
+            compared_frames: shot.compared_frames,
             errors: by_region,
             floors: truth.floors,
             truth_samples: truth.samples,

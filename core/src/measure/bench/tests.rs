@@ -87,7 +87,15 @@ fn shot() -> Shot {
     scene.subject = vec![0];
     let camera = scene.cameras[0].clone();
     let metals = BTreeMap::new();
-    Shot { name: "a, \"b\"".into(), scene: Arc::new(scene), camera, size: UVec2::new(24, 16), exposure_ev: 0.0, metals }
+    Shot {
+        name: "a, \"b\"".into(),
+        scene: Arc::new(scene),
+        camera,
+        size: UVec2::new(24, 16),
+        exposure_ev: 0.0,
+        compared_frames: COMPARED_FRAMES,
+        metals,
+    }
 }
 
 fn truth(shot: &Shot, cache: &Cache) -> Truth {

@@ -13,7 +13,7 @@ pub struct Aids {
     source: Source,
 }
 
-/// Whose light is shown. Lights go by their names: their places change as others are muted.
+/// Whose light is shown. Lights go by their names, and by which of those of the name: their places change as others are muted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Source {
     /// All light.
@@ -23,24 +23,27 @@ pub enum Source {
     Environment,
     /// That of materials that glow.
     Emission,
-    /// That of a light.
-    Light(String),
+    /// That of a light: its name, and how many of that name come before it.
+    Light(String, usize),
 }
 
 impl Source {
     /// All that a scene has, all light first.
     pub fn of_scene(scene: &Scene) -> Vec<Source> {
-        let lights = scene.lights.iter().map(|light| Source::Light(light.name.clone()));
+        let before = |place: usize| scene.lights[..place].iter().filter(|l| l.name == scene.lights[place].name).count();
+        let lights =
+            (0..scene.lights.len()).map(|place| Source::Light(scene.lights[place].name.clone(), before(place)));
         [Source::All, Source::Environment, Source::Emission].into_iter().chain(lights).collect()
     }
 
     /// Name for people.
-    pub fn title(&self) -> &str {
+    pub fn title(&self) -> String {
         match self {
-            Source::All => "All light",
-            Source::Environment => "Environment",
-            Source::Emission => "Glowing surfaces",
-            Source::Light(name) => name,
+            Source::All => "All light".into(),
+            Source::Environment => "Environment".into(),
+            Source::Emission => "Glowing surfaces".into(),
+            Source::Light(name, 0) => name.clone(),
+            Source::Light(name, before) => format!("{name} ({})", before + 1),
         }
     }
 }
@@ -58,9 +61,7 @@ impl Aids {
 
     /// Goes back to all light where the light that is shown is no longer there, or muted.
     pub fn follow(&mut self, scene: &Scene) {
-        if let Source::Light(name) = &self.source
-            && !scene.lights.iter().any(|light| light.name == *name)
-        {
+        if !Source::of_scene(scene).contains(&self.source) {
             self.source = Source::All;
         }
     }
@@ -76,9 +77,9 @@ impl Aids {
             Source::All => Contribution::All,
             Source::Environment => Contribution::Environment,
             Source::Emission => Contribution::Emission,
-            Source::Light(name) => {
-                let place = scene.lights.iter().position(|light| light.name == *name);
-                place.map_or(Contribution::All, Contribution::Light)
+            Source::Light(name, before) => {
+                let mut places = (0..scene.lights.len()).filter(|place| scene.lights[*place].name == *name);
+                places.nth(*before).map_or(Contribution::All, Contribution::Light)
             }
         }
     }
@@ -96,11 +97,16 @@ mod tests {
         let mut scene = Scene { lights: vec![light("a"), light("b")], ..Scene::default() };
         let mut aids = Aids::default();
         assert_eq!(Source::of_scene(&scene).len(), 5);
-        aids.show(Source::Light("b".into()));
+        aids.show(Source::Light("b".into(), 0));
         assert_eq!(aids.contribution(&scene), Contribution::Light(1));
         scene.lights.remove(0);
         aids.follow(&scene);
         assert_eq!(aids.contribution(&scene), Contribution::Light(0));
+        scene.lights.push(light("b"));
+        let sources = Source::of_scene(&scene);
+        assert_eq!((sources[3].title(), sources[4].title()), ("b".into(), "b (2)".into()));
+        aids.show(sources[4].clone());
+        assert_eq!(aids.contribution(&scene), Contribution::Light(1), "lights of one name are told apart");
         scene.lights.clear();
         aids.follow(&scene);
         assert_eq!((aids.source(), aids.contribution(&scene)), (&Source::All, Contribution::All));

@@ -205,7 +205,7 @@ pub const TABLE: &[Entry] = &[
         Command::SaveEnvironment,
         "Save environment...",
         None,
-        "Write the environment as HDR or EXR, with strength and tint, not turned.",
+        "Write the environment as HDR or EXR, with strength and tint, not turned, without a sun that is a light.",
     ),
     entry(Menu::File, Command::Quit, "Quit", ctrl(Key::Q), "End the program."),
     entry(Menu::Edit, Command::Undo, "Undo", ctrl(Key::Z), "Take back the last edit."),

@@ -34,6 +34,8 @@ struct Source {
     picture: Arc<Picture>,
     /// Samples of each pixel where it is path-traced.
     samples: u32,
+    /// Of what it is, where it is path-traced.
+    subject: u64,
 }
 
 /// What was counted.
@@ -62,10 +64,10 @@ pub struct Scope {
 }
 
 impl Scope {
-    /// Ends a frame of the window: a picture that changes unseen is read again.
+    /// Ends a frame of the window. What nobody looks at is forgotten: it would be told of another picture.
     pub fn end_frame(&mut self) {
         if !std::mem::take(&mut self.asked) {
-            (self.live, self.reading, self.fault) = (None, None, None);
+            *self = Scope::default();
         }
     }
 
@@ -90,14 +92,19 @@ impl Scope {
             Some(Ok(None)) => ctx.request_repaint(),
             None => {}
         }
-        let source = self.live.clone().map(|picture| Source { picture, samples: 0 });
+        let source = self.live.clone().map(|picture| Source { picture, samples: 0, subject: 0 });
         self.update(ctx, exposure, source);
     }
 
-    /// Follows a picture that is refined on the processor.
-    pub fn follow_traced(&mut self, ctx: &egui::Context, exposure: Exposure, picture: &Arc<Picture>, samples: u32) {
+    /// Follows a picture that is refined on the processor; `subject` is another number where it shows something else.
+    pub fn follow_traced(
+        &mut self,
+        ctx: &egui::Context,
+        exposure: Exposure,
+        (picture, samples, subject): (&Arc<Picture>, u32, u64),
+    ) {
         (self.live, self.reading, self.fault) = (None, None, None);
-        self.update(ctx, exposure, Some(Source { picture: picture.clone(), samples }));
+        self.update(ctx, exposure, Some(Source { picture: picture.clone(), samples, subject }));
     }
 
     /// A thread counts, or a picture is on its way.
@@ -141,6 +148,7 @@ impl Source {
     /// Counts of this picture are nearly those of the other.
     fn is_near(&self, other: &Source) -> bool {
         let refined = self.samples > 0
+            && self.subject == other.subject
             && other.samples >= self.samples
             && f64::from(other.samples) < AGAIN * f64::from(self.samples)
             && (self.picture.width, self.picture.height) == (other.picture.width, other.picture.height);
@@ -198,11 +206,18 @@ mod tests {
     fn a_traced_picture_is_counted_again_with_more_samples_only() {
         let (mut scope, ctx) = (Scope::default(), egui::Context::default());
         let picture = |value: f32| Arc::new(Picture::filled(4, 4, Vec4::splat(value)));
-        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, &picture(0.18), 10));
+        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, (&picture(0.18), 10, 1)));
         let first = scope.counted().unwrap().clone();
-        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, &picture(0.5), 12));
+        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, (&picture(0.5), 12, 1)));
         assert!(Arc::ptr_eq(&first, scope.counted().unwrap()));
-        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, &picture(0.5), 13));
-        assert_ne!(first.histogram, scope.counted().unwrap().histogram);
+        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, (&picture(0.5), 13, 1)));
+        let second = scope.counted().unwrap().clone();
+        assert_ne!(first.histogram, second.histogram);
+        until_counted(&mut scope, |scope| scope.follow_traced(&ctx, PLAIN, (&picture(0.18), 13, 2)));
+        assert_eq!(first.histogram, scope.counted().unwrap().histogram, "another subject with as many samples");
+        scope.end_frame();
+        assert!(scope.counted().is_some());
+        scope.end_frame();
+        assert!(scope.counted().is_none(), "nobody looked");
     }
 }

@@ -29,8 +29,9 @@ pub struct Session {
     curves: Curves,
     resolved: Resolved,
     layers: Layers,
-    /// Box of what the picture is about, measured when someone asks.
+    /// Boxes of what the picture is about and of all, measured when someone asks.
     subject_bounds: OnceCell<Bounds>,
+    bounds: OnceCell<Bounds>,
     /// Where the document is saved; `None` before the first time.
     pub path: Option<PathBuf>,
     saved: Arc<Document>,
@@ -66,6 +67,7 @@ impl Session {
             resolved,
             layers,
             subject_bounds: OnceCell::new(),
+            bounds: OnceCell::new(),
             path,
             saved,
             selection: Selection::default(),
@@ -101,6 +103,11 @@ impl Session {
     /// Box of what the picture is about. Measured once for a scene: that visits every vertex.
     pub fn subject_bounds(&self) -> Bounds {
         *self.subject_bounds.get_or_init(|| self.scene().subject_bounds())
+    }
+
+    /// Box of the whole scene, measured likewise.
+    pub fn bounds(&self) -> Bounds {
+        *self.bounds.get_or_init(|| self.scene().bounds())
     }
 
     /// The files of the document.
@@ -249,6 +256,7 @@ impl Session {
         self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
         self.layers = self.history.current().lighting.layers(&self.resolved.object_keys);
         self.subject_bounds.take();
+        self.bounds.take();
         let known = |missing: &Missing| self.unread.iter().find(|m| m.path == missing.path && m.kind == missing.kind);
         self.missing = self.resolved.missing.iter().map(|missing| known(missing).unwrap_or(missing).clone()).collect();
         let materials = self.document().materials.len();

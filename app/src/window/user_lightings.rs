@@ -94,7 +94,10 @@ impl UserLightings {
         let mut arrived = None;
         match self.running.as_mut().map(Job::poll) {
             None | Some(Outcome::Running) => {}
-            Some(Outcome::Failed) => self.running = None,
+            Some(Outcome::Failed) => {
+                self.running = None;
+                requests.push(Request::Error("a lighting preset could not be read or written; try again".into()));
+            }
             Some(Outcome::Done(done)) => {
                 self.running = None;
                 if *self.listing != done.listing {
@@ -127,8 +130,10 @@ impl Task {
             Task::Remove(path) => Some(remove(&path, folder)),
             Task::Import(path) => Some(LightingPreset::read(&path).map_err(|e| e.to_string()).and_then(|preset| {
                 arrived = Some(preset.clone());
-                // What comes from the folder, or is there already, needs no copy.
-                let known = read(folder).0.iter().any(|(_, known)| *known == preset);
+                // What is there already needs no copy; ids are those of the files.
+                let is_it =
+                    |known: &LightingPreset| LightingPreset { id: preset.id.clone(), ..known.clone() } == preset;
+                let known = read(folder).0.iter().any(|(_, known)| is_it(known));
                 match known || folder.is_none() {
                     true => Ok(format!("Lit by `{}`", preset.name)),
                     false => keep(preset, folder),
@@ -171,6 +176,7 @@ fn keep(preset: LightingPreset, folder: Option<&Path>) -> Result<String, String>
 }
 
 fn write(preset: &LightingPreset, path: &Path) -> Result<(), String> {
+    preset.check(&preset.name).map_err(|fault| fault.to_string())?;
     path.parent().map_or(Ok(()), make)?;
     write_atomic(path, preset.to_text().as_bytes()).map_err(|error| error.to_string())
 }
@@ -226,7 +232,7 @@ mod tests {
         assert_eq!(own.listing().len(), 3);
         own.import(file.clone());
         finished(&mut own);
-        assert_eq!(own.listing().iter().filter(|(_, preset)| preset.name.starts_with("Shared")).count(), 2);
+        assert_eq!(own.listing().iter().filter(|(_, preset)| preset.name.starts_with("Shared")).count(), 1);
 
         let mine = own.listing()[0].0.clone();
         own.remove(&mine);

@@ -39,7 +39,7 @@ pub struct LightingPreset {
     /// What it is for.
     #[serde(default)]
     pub note: String,
-    /// The environment that belongs to it; that of the document stays when absent.
+    /// Strength and turn of the environment that is there; the rest of the entry counts for nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub environment: Option<EnvironmentEntry>,
     /// Around a sphere of radius 1 about the origin; powers are those for this size.
@@ -190,6 +190,9 @@ impl LightingPreset {
         if let Some((field, reason, remedy)) = header.fault() {
             return fault(field, reason, remedy);
         }
+        if let Some(Err(reason)) = self.environment.as_ref().map(|environment| environment.check("")) {
+            return fault("environment", reason, "take a number in that range");
+        }
         if self.lights.len() > MOST {
             return fault("lights", format!("has {}", self.lights.len()), "leave at most 64");
         }
@@ -237,7 +240,11 @@ impl LightingPreset {
             id: id_of(name),
             name: name.into(),
             note: String::new(),
-            environment: Some(document.environment.clone()),
+            environment: Some(EnvironmentEntry {
+                rotation_deg: document.environment.rotation_deg,
+                strength: document.environment.strength,
+                ..EnvironmentEntry::default()
+            }),
             lights: document.light_entries(model).into_iter().map(place).collect(),
             other: Map::new(),
         }
@@ -245,11 +252,13 @@ impl LightingPreset {
 }
 
 impl Document {
-    /// Lights the subject by a preset: its lights replace all others, and its environment if it has one.
+    /// Lights the subject by a preset: its lights replace all others; the environment gets its strength and turn and stays what
+    /// it is otherwise.
     pub fn apply_lighting(&mut self, preset: &LightingPreset, subject: Bounds) {
         self.lights = Some(preset.lights_around(subject));
         if let Some(environment) = &preset.environment {
-            self.environment = environment.clone();
+            self.environment.strength = environment.strength;
+            self.environment.rotation_deg = environment.rotation_deg;
         }
     }
 }
@@ -284,7 +293,12 @@ mod tests {
         let subject = Bounds { min: Vec3::new(1.0, 0.0, -0.5), max: Vec3::new(1.4, 0.9, 0.5) };
         for preset in LightingPreset::library() {
             let mut document = Document::new("gallery:workbench".into());
+            document.environment.made = Some(crate::document::MadeEntry::Studio(Default::default()));
+            document.environment.tint = [1.0, 0.5, 0.25];
+            let around = document.environment.clone();
             document.apply_lighting(preset, subject);
+            assert_eq!((&document.environment.made, document.environment.tint), (&around.made, around.tint));
+            assert_eq!(Some(document.environment.strength), preset.environment.as_ref().map(|e| e.strength));
             let back = LightingPreset::of_document("My set, 2", &document, &model, subject);
             assert_eq!((back.id.as_str(), back.lights.len()), ("my-set-2", preset.lights.len()));
             for (a, b) in back.lights.iter().zip(&preset.lights) {
@@ -300,6 +314,7 @@ mod tests {
         let good = LightingPreset::library()[0].to_text();
         for (from, to, needles) in [
             ("burnish-lighting", "burnish-finish", ["format", "burnish-lighting"]),
+            ("\"rotation_deg\"", "\"tint\": [-1, 1, 1], \"rotation_deg\"", ["environment", "tint"]),
             ("\"version\": 1", "\"version\": 2", ["version", "reads version 1"]),
             ("\"unit\": \"nit\"", "\"unit\": \"lx\"", ["lights[0].unit", "nit"]),
             ("\"three-point\"", "\"../etc\"", ["id", "x.json"]),

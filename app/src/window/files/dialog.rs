@@ -269,7 +269,8 @@ impl Dialog {
                 return Err(format!("{}: the name needs the ending .hdr or .exr", path.display()));
             }
             Ask::SaveEnvironment => {}
-            Ask::ExportLighting => _ = path.set_extension("json"),
+            Ask::ExportLighting if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) => {}
+            Ask::ExportLighting => path.as_mut_os_string().push(".json"),
             _ if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("burnish")) => {
                 path.as_mut_os_string().push(".burnish");
             }

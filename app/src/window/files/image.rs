@@ -8,7 +8,7 @@ use burnish_core::file::{write_environment, write_picture};
 use burnish_core::job::{Handle, Job};
 use burnish_core::lighting::{Layers, MethodError, Store};
 use burnish_core::picture::Picture;
-use burnish_core::reference::{self, Film, Options, Pass, World};
+use burnish_core::reference::{self, Contribution, Film, Options, Pass, World};
 use burnish_core::scene::Environment;
 use burnish_render::{Gpu, Passes, Renderer, View};
 use eframe::egui;
@@ -72,7 +72,7 @@ impl ImageSettings {
         } else {
             self.live_ui(ui);
         }
-        ui.weak(".png: as on the screen, with its view transform noted.  .exr: linear radiance.");
+        ui.weak(".png: through exposure and tone map, which are noted.  .exr: linear radiance.");
     }
 
     /// Size and quality of a picture that is rendered.
@@ -113,12 +113,13 @@ pub type Writing = Job<Result<String, String>>;
 pub fn start(
     session: &Session,
     (passes, look, store): (Option<&Arc<Passes>>, Option<&Look>, Store),
+    contribution: Contribution,
     settings: ImageSettings,
     path: PathBuf,
     ctx: &egui::Context,
 ) -> Result<Writing, String> {
     if !settings.as_shown {
-        return Ok(render(session, (passes, store), settings, path, ctx));
+        return Ok(render(session, (passes, store, contribution), settings, path, ctx));
     }
     let look = look.filter(|look| look.whole_size().is_some());
     let picture = look.ok_or("there is no whole picture yet; wait for its first sample, then save")?.picture.clone();
@@ -130,13 +131,17 @@ pub fn start(
     Ok(Job::spawn(label, move || waker.request_repaint(), work))
 }
 
-/// Starts to write an environment: strength and tint are in its texels, its turn is not.
-pub fn write_map(map: Arc<Environment>, path: PathBuf, ctx: &egui::Context) -> Writing {
+/// Starts to write an environment: strength and tint are in its texels, its turn is not, nor a sun that is a light.
+pub fn write_map(map: Arc<Environment>, path: PathBuf, without_sun: bool, ctx: &egui::Context) -> Writing {
     let waker = ctx.clone();
     let label = format!("Writing {}", name_of(&path.to_string_lossy()));
-    let work = move |_: &Handle| {
+    let work = move |handle: &Handle| {
+        if handle.is_cancelled() {
+            return Ok(String::new());
+        }
         write_environment(&map, &path).map_err(|e| e.to_string())?;
-        Ok(format!("Wrote {} ({} x {} pixels)", path.display(), map.width, map.height))
+        let sun = if without_sun { "; its sun is a light and not in it" } else { "" };
+        Ok(format!("Wrote {} ({} x {} pixels){sun}", path.display(), map.width, map.height))
     };
     Job::spawn(label, move || waker.request_repaint(), work)
 }
@@ -144,7 +149,7 @@ pub fn write_map(map: Arc<Environment>, path: PathBuf, ctx: &egui::Context) -> W
 /// Starts to render the document's view into a file, on the window's device where there is one.
 fn render(
     session: &Session,
-    (passes, store): (Option<&Arc<Passes>>, Store),
+    (passes, store, contribution): (Option<&Arc<Passes>>, Store, Contribution),
     settings: ImageSettings,
     path: PathBuf,
     ctx: &egui::Context,
@@ -171,6 +176,7 @@ fn render(
             None => Arc::new(Passes::new(&Gpu::new().map_err(|e| e.to_string())?)),
         };
         let mut renderer = Renderer::with_passes(&passes, &scene).map_err(|e| e.to_string())?;
+        renderer.show(contribution);
         let going_on = |fraction: f32| {
             handle.set_progress(fraction);
             progress.request_repaint();

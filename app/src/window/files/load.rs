@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burnish_core::document::{self, Document, Missing, MissingKind, Sources, TextureChoice};
+use burnish_core::document::{self, Document, MadeEntry, Missing, MissingKind, Sources, TextureChoice};
 use burnish_core::job::{Job, Outcome};
 use burnish_core::material::TextureRole;
 use burnish_core::scene::{Environment, Image, Scene};
@@ -12,6 +12,7 @@ use eframe::egui;
 
 use super::recovery::{Found, Recovery, Snapshot};
 use super::watch::{Watch, stamps};
+use crate::window::panel::expose;
 use crate::window::preferences::Preferences;
 use crate::window::request::{Request, Requests};
 use crate::window::session::Session;
@@ -196,7 +197,15 @@ pub fn environment(path: &Path) -> Load {
             landing.watch.add(seen);
             landing.session.edit_sources(|sources| _ = sources.environments.insert(known.clone(), map));
             landing.session.seal();
-            landing.session.edit("Load HDRI", &name_of(&known), |document| document.environment.source = Some(known));
+            let (name, label) = (name_of(&known), "Load HDRI");
+            let made = landing.session.document().environment.made.clone();
+            landing.session.edit(label, &name, |document| {
+                (document.environment.source, document.environment.made) = (Some(known), None);
+            });
+            // Skies are some 10 000 times as bright as what stands in other maps.
+            if matches!(made, Some(MadeEntry::Sky(_))) {
+                expose(landing.session, label, &name);
+            }
         }))
     })
 }

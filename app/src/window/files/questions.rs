@@ -68,15 +68,25 @@ impl Files {
             }
             Ask::Relink(missing) => self.outbox.push(Request::Relink { missing, path }),
             Ask::SaveAs(next) => self.save(context.session, Wish { path: Some(path), next }, ctx),
+            Ask::SaveEnvironment | Ask::SaveImage(_) if self.picture.is_some() => {
+                let words = "another picture is being written; wait for it or cancel it, then save again";
+                self.outbox.push(Request::Error(words.into()));
+            }
             Ask::SaveEnvironment => match context.session.scene().environment.clone() {
-                Some(map) => self.picture = Some(image::write_map(map, path, ctx)),
+                Some(map) => {
+                    let without_sun =
+                        context.session.scene().lights.iter().any(|light| light.name.starts_with("Sun of "));
+                    self.picture = Some(image::write_map(map, path, without_sun, ctx));
+                }
                 None => self.outbox.push(Request::Error("the scene has no environment to save".into())),
             },
             Ask::SaveImage(settings) => {
-                let Context { session, stage, reference, .. } = context;
+                let Context { session, stage, reference, aids, .. } = context;
+                let contribution = aids.contribution(session.scene());
                 match image::start(
                     session,
                     (stage.passes(), reference.shown(), self.prepared_store()),
+                    contribution,
                     settings,
                     path,
                     ctx,

@@ -34,7 +34,7 @@ use super::user_presets::UserPresets;
 
 pub use chart::ChartPanel;
 pub use compare::ComparePanel;
-pub use environment::EnvironmentPanel;
+pub use environment::{EnvironmentPanel, expose};
 pub use history::HistoryPanel;
 pub use lights::LightsPanel;
 pub use material::MaterialPanel;
@@ -168,6 +168,11 @@ pub struct Panels {
 }
 
 impl Panels {
+    /// Forgets what belongs to the document.
+    pub fn forget(&mut self) {
+        self.environment = EnvironmentPanel::default();
+    }
+
     fn ui(&mut self, pane: Pane, ui: &mut egui::Ui, context: &mut Context<'_>) {
         match pane {
             Pane::Viewport => self.viewport.ui(ui, context),

@@ -48,10 +48,12 @@ impl ScopePanel {
             }
             ui.checkbox(&mut self.channels, "R, G, B").on_hover_text("The channels instead of luminance.");
         });
-        let Some(counted) = context.scope.counted().cloned() else {
+        let compared = context.compare.view().is_some();
+        let counted = context.scope.counted().filter(|_| !compared && context.scope.fault().is_none()).cloned();
+        let Some(counted) = counted else {
             let words = match context.scope.fault() {
+                _ if compared => "Shown of one picture: close the comparison.".into(),
                 Some(fault) => fault.to_string(),
-                None if context.compare.view().is_some() => "Shown of one picture: close the comparison.".into(),
                 None => "Waits for the picture to be sharp.".into(),
             };
             ui.weak(words);
@@ -118,7 +120,10 @@ fn follow(ctx: &egui::Context, context: &mut Context<'_>) {
         return;
     }
     match context.reference.shown() {
-        Some(look) => context.scope.follow_traced(ctx, exposure, &look.picture, look.samples),
+        Some(look) => {
+            let subject = context.session.revision;
+            context.scope.follow_traced(ctx, exposure, (&look.picture, look.samples, subject));
+        }
         None => {
             let Context { stage, scope, .. } = context;
             let status = stage.status();

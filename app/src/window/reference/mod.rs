@@ -106,7 +106,9 @@ impl Subject {
     /// The same by the document's methods, on the processor.
     #[must_use]
     pub fn by_points(self, layers: Layers, prepared: Vec<Arc<Prepared>>) -> Subject {
-        Subject { settings: self.document.lighting.world_settings(), by: By::Points(layers, prepared), ..self }
+        // Methods on the processor show all light.
+        let (settings, contribution) = (self.document.lighting.world_settings(), Contribution::All);
+        Subject { settings, contribution, by: By::Points(layers, prepared), ..self }
     }
 
     /// Both give the same picture: the metals of a document only count with its scene, which is made anew with them.

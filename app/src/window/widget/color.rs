@@ -75,7 +75,9 @@ pub(super) fn channels_ui(ui: &mut egui::Ui, spec: &ParamSpec, color: [f64; 3], 
             changed |= field.changed();
         }
         if changed {
-            edit.change = Some(Change::Set(ParamValue::Color(new.map(|v| v.clamp(0.0, max)))));
+            // Channels beyond the range that nobody touched stay.
+            let clamped = |i: usize| if new[i] == color[i] { new[i] } else { new[i].clamp(0.0, max) };
+            edit.change = Some(Change::Set(ParamValue::Color([0, 1, 2].map(clamped))));
         }
     });
 }

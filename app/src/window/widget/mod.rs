@@ -15,7 +15,7 @@ use number::{LOGARITHMIC, far_above, number_ui, vector_ui};
 
 pub use choice::choice_ui;
 pub use color::screen_color;
-pub use row::{columns, name_input, name_ui, name_widget, reset_ui};
+pub use row::{columns, name_input, name_ui, name_widget, reset_ui, typed_ui};
 
 /// What someone did to a widget.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

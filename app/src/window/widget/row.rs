@@ -49,6 +49,20 @@ pub fn name_widget(response: &Response, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(egui::accesskit::Role::Button, response.enabled(), name));
 }
 
+/// A field for a text; what is typed counts, and is returned, when the field is left.
+pub fn typed_ui(ui: &mut egui::Ui, label: &str, text: &str, width: f32) -> Option<String> {
+    let id = ui.scope_id().with(label);
+    let mut typed = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| text.into());
+    let field = ui.add(egui::TextEdit::singleline(&mut typed).desired_width(width));
+    name_input(&field, label, &typed);
+    if field.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, typed.clone()));
+    } else {
+        ui.data_mut(|data| data.remove::<String>(id));
+    }
+    (field.lost_focus() && typed != text).then(|| typed.trim().into())
+}
+
 /// Gives a text field a name that can be read out.
 pub fn name_input(response: &Response, name: &str, text: &str) {
     response.widget_info(|| {

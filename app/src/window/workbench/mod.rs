@@ -162,6 +162,7 @@ impl Workbench {
     fn forget_light(&mut self) {
         self.preparations.forget();
         self.compare.forget();
+        self.panels.forget();
     }
 
     /// The user's choices.

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::Turn;
 use crate::color::rgb::luminance;
@@ -174,7 +175,14 @@ impl Grid<'_> {
 
     fn mean_outside(&self, region: &[usize]) -> f32 {
         let total = |i: usize| f64::from(self.luminance(i)) * self.solid_angle(i);
-        let all: f64 = (0..self.len()).map(total).sum();
+        // Row by row: texels of a row are alike in size, and maps may have tens of millions.
+        let width = self.map.width.max(1) as usize;
+        let of_row = |row: usize| -> f64 {
+            let texels = row * width..self.len().min((row + 1) * width);
+            let light: f64 = texels.map(|i| f64::from(self.luminance(i))).sum();
+            light * self.solid_angle(row * width)
+        };
+        let all: f64 = (0..self.len().div_ceil(width)).into_par_iter().map(of_row).collect::<Vec<_>>().iter().sum();
         let inside: f64 = region.iter().map(|&i| total(i)).sum();
         let left = 4.0 * PI - region.iter().map(|&i| self.solid_angle(i)).sum::<f64>();
         ((all - inside) / left.max(1e-9)).max(0.0) as f32

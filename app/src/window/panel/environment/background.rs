@@ -117,11 +117,16 @@ fn ground_ui(ui: &mut egui::Ui, session: &mut Session, ground: &GroundEntry) {
     row(ui, &SHADOWS, ParamValue::Toggle(ground.shadows), |ground, value| {
         ground.shadows = value == ParamValue::Toggle(true);
     });
-    // What counts as unchanged is up to the scene.
-    let now = session.scene().background.ground.map_or(0.0, |ground| f64::from(ground.middle.y));
-    let level = ground.level.unwrap_or(now);
-    let base = if ground.level.is_some() { f64::from(session.subject_bounds().min.y) } else { level };
-    let edit = param_ui(ui, &LEVEL, ParamValue::Number(level), ParamValue::Number(base));
+    // What counts as unchanged, and what is far, is up to the scene.
+    let bounds = session.bounds();
+    let (base, reach) = match bounds.is_empty() {
+        true => (0.0, 1.0),
+        false => (f64::from(bounds.min.y), 4.0 * f64::from(bounds.radius()).clamp(1e-3, 1e5)),
+    };
+    let level = ground.level.unwrap_or(base);
+    let kind = Number { min: base - reach, max: base + reach, default: base };
+    let spec = ParamSpec { kind, ..LEVEL };
+    let edit = param_ui(ui, &spec, ParamValue::Number(level), ParamValue::Number(base));
     let new = match edit.change {
         Some(Change::Set(value)) => Some(Some(number(value))),
         Some(Change::Reset) => Some(None),

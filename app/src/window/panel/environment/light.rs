@@ -1,7 +1,7 @@
 //! What lights the scene from infinitely far away: a map from a file, a sky or a studio, and how it stands.
 
 use burnish_core::color::rgb::luminance;
-use burnish_core::document::{MadeEntry, SkyEntry, StudioEntry};
+use burnish_core::document::{BackgroundEntry, EnvironmentEntry, MadeEntry, SkyEntry, StudioEntry};
 use burnish_core::param::{ParamKind, ParamSpec, ParamValue};
 use burnish_core::scene::LightKind;
 use eframe::egui::{self, Role, WidgetInfo};
@@ -65,6 +65,14 @@ enum Kind {
     Studio,
 }
 
+/// A map from a file, and what is done with its sun.
+#[derive(Clone)]
+struct FileEntry {
+    source: Option<String>,
+    sun_split: bool,
+    sun_strength: f64,
+}
+
 /// Which map, and how it stands.
 #[derive(Default)]
 pub struct LightSection {
@@ -72,7 +80,8 @@ pub struct LightSection {
     map: map::MapView,
     /// The softbox that is edited.
     softbox: usize,
-    /// What was made before another kind was chosen.
+    /// What there was before another kind was chosen.
+    file: Option<FileEntry>,
     sky: Option<SkyEntry>,
     studio: Option<StudioEntry>,
 }
@@ -105,7 +114,7 @@ impl LightSection {
                 document.environment.tint = tint;
             }
         });
-        let hover = "Write the map as .hdr or .exr, with strength and tint, not turned.";
+        let hover = "Write the map as .hdr or .exr, with strength and tint, not turned, without a sun that is a light.";
         if ui.button("Save environment...").on_hover_text(hover).clicked() {
             context.requests.push(Request::Command(Command::SaveEnvironment));
         }
@@ -133,11 +142,14 @@ impl LightSection {
     /// Goes over to another kind as one step.
     fn choose(&mut self, session: &mut Session, kind: Kind) {
         let before = self::kind(session);
-        match &session.document().environment.made {
-            Some(MadeEntry::Sky(sky)) => self.sky = Some(sky.clone()),
-            Some(MadeEntry::Studio(studio)) => self.studio = Some(studio.clone()),
-            _ => {}
+        let EnvironmentEntry { source, made, sun_split, sun_strength, .. } = session.document().environment.clone();
+        match made {
+            Some(MadeEntry::Sky(sky)) if before == Kind::Sky => self.sky = Some(sky),
+            Some(MadeEntry::Studio(studio)) if before == Kind::Studio => self.studio = Some(studio),
+            _ => self.file = Some(FileEntry { source, sun_split, sun_strength }),
         }
+        let none = FileEntry { source: None, sun_split: false, sun_strength: 1.0 };
+        let file = self.file.clone().filter(|_| kind == Kind::File).unwrap_or(none);
         let made = match kind {
             Kind::File => None,
             Kind::Sky => Some(MadeEntry::Sky(self.sky.clone().unwrap_or_default())),
@@ -146,14 +158,14 @@ impl LightSection {
         let label = "Kind of environment";
         session.seal();
         session.edit(label, "", |document| {
-            document.environment.made = made;
-            if kind != Kind::File {
-                (document.environment.source, document.environment.sun_split) = (None, false);
-            }
+            let environment = &mut document.environment;
+            environment.made = made;
+            (environment.source, environment.sun_split) = (file.source, file.sun_split);
+            environment.sun_strength = file.sun_strength;
         });
         // Skies are some 10 000 times as bright as what stands in other maps.
         if kind == Kind::Sky || before == Kind::Sky {
-            tone::expose(session, label);
+            tone::expose(session, label, "");
         }
         session.seal();
     }
@@ -218,8 +230,13 @@ fn source_ui(ui: &mut egui::Ui, session: &Session) {
     };
     let name = if map.name.is_empty() { "unnamed" } else { &map.name };
     ui.add(egui::Label::new(egui::RichText::new(name).strong()).truncate()).on_hover_text(from);
-    let hover = "Equirectangular map of radiance. It is also the background of the picture.";
-    ui.weak(format!("{} x {} pixels, also the background", map.width, map.height)).on_hover_text(hover);
+    let background = match &document.environment {
+        EnvironmentEntry { background: BackgroundEntry::Color(_), .. } => "a colour is the background",
+        environment if environment.background_blur_deg > 0.0 => "blurred the background",
+        _ => "also the background",
+    };
+    let hover = "Equirectangular map of radiance.";
+    ui.weak(format!("{} x {} pixels, {background}", map.width, map.height)).on_hover_text(hover);
 }
 
 /// The row of the sun's own strength.
@@ -242,7 +259,8 @@ fn kind(session: &Session) -> Kind {
 
 /// The sun that was taken out of the map, or why there is none.
 fn sun_text(session: &Session) -> String {
-    let sun = session.scene().lights.iter().find(|light| light.name.starts_with("Sun of "));
+    // After all lights of the document.
+    let sun = session.scene().lights.iter().rev().find(|light| light.name.starts_with("Sun of "));
     match sun.map(|sun| (sun, sun.kind)) {
         Some((sun, LightKind::Directional { angular_radius })) => format!(
             "{}: {} lx on a surface that faces it, {:.2} degrees wide",

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use burnish_core::color::tone::{ToneMap, exposure_factor, tone_map};
 use burnish_core::document::{MadeEntry, SkyEntry, SoftBoxEntry};
 use burnish_core::scene::Environment;
-use burnish_core::scene::environment::direction;
 use eframe::egui::{
     self, Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -104,6 +103,12 @@ fn place_of(rect: Rect, d: Vec3) -> Pos2 {
     rect.min + share * rect.size()
 }
 
+/// Where an azimuth and an elevation are, degrees; straight above, too, at its azimuth.
+fn place_at(rect: Rect, azimuth_deg: f64, elevation_deg: f64) -> Pos2 {
+    let turns = (0.5 - azimuth_deg / 360.0).rem_euclid(1.0);
+    rect.min + vec2(turns as f32, (0.5 - elevation_deg / 180.0) as f32) * rect.size()
+}
+
 /// Azimuth and elevation at a point of the rectangle, degrees to a tenth.
 fn angles_of(rect: Rect, at: Pos2) -> [f64; 2] {
     let share = (at - rect.min) / rect.size();
@@ -113,7 +118,7 @@ fn angles_of(rect: Rect, at: Pos2) -> [f64; 2] {
 
 fn box_ui(ui: &egui::Ui, rect: Rect, session: &mut Session, (lamp, place): (&SoftBoxEntry, usize), chosen: &mut usize) {
     let shape = lamp.shape();
-    let at = place_of(rect, direction(shape.azimuth, shape.elevation));
+    let at = place_at(rect, lamp.azimuth_deg, lamp.elevation_deg);
     let ink = if place == *chosen { ui.visuals().selection.bg_fill.gamma_multiply(1.6) } else { Color32::GRAY };
     let painter = ui.painter_at(rect);
     let outline: Vec<Pos2> = shape.outline(OUTLINE).into_iter().map(|d| place_of(rect, d)).collect();
@@ -125,7 +130,7 @@ fn box_ui(ui: &egui::Ui, rect: Rect, session: &mut Session, (lamp, place): (&Sof
         }
     }
     let name = studio::title(lamp, place);
-    let grip = handle_ui(ui, rect, at, ink, &format!("Handle of softbox {name}"));
+    let grip = handle_ui(ui, rect, (at, ink), place, &format!("Handle of softbox {name}"));
     if grip.clicked() || grip.drag_started() {
         *chosen = place;
     }
@@ -144,8 +149,9 @@ fn box_ui(ui: &egui::Ui, rect: Rect, session: &mut Session, (lamp, place): (&Sof
 }
 
 fn sun_ui(ui: &egui::Ui, rect: Rect, session: &mut Session, sky: &SkyEntry) {
-    let at = place_of(rect, direction(sky.azimuth_deg.to_radians() as f32, sky.elevation_deg.to_radians() as f32));
-    let grip = handle_ui(ui, rect, at, Color32::from_rgb(240, 228, 66), "Handle of the sun");
+    let at = place_at(rect, sky.azimuth_deg, sky.elevation_deg);
+    let ink = Color32::from_rgb(240, 228, 66);
+    let grip = handle_ui(ui, rect, (at, ink), 0, "Handle of the sun");
     let moved = grip.interact_pointer_pos().filter(|_| grip.dragged() && grip.drag_delta() != Vec2::ZERO);
     if let Some(pointer) = moved {
         let [azimuth, elevation] = angles_of(rect, pointer);
@@ -160,11 +166,11 @@ fn sun_ui(ui: &egui::Ui, rect: Rect, session: &mut Session, sky: &SkyEntry) {
     }
 }
 
-/// A dot that is dragged.
-fn handle_ui(ui: &egui::Ui, rect: Rect, at: Pos2, ink: Color32, name: &str) -> egui::Response {
+/// A dot that is dragged; `number` tells it from others.
+fn handle_ui(ui: &egui::Ui, rect: Rect, (at, ink): (Pos2, Color32), number: usize, name: &str) -> egui::Response {
     ui.painter_at(rect).circle(at, 4.0, ink, Stroke::new(1.5, Color32::from_black_alpha(160)));
     let place = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
-    let grip = ui.interact(place, ui.scope_id().with(name), Sense::click_and_drag());
+    let grip = ui.interact(place, ui.scope_id().with(("handle", number)), Sense::click_and_drag());
     grip.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     grip.on_hover_and_drag_cursor(egui::CursorIcon::Move)
 }
@@ -172,6 +178,7 @@ fn handle_ui(ui: &egui::Ui, rect: Rect, at: Pos2, ink: Color32, name: &str) -> e
 #[cfg(test)]
 mod tests {
     use super::*;
+    use burnish_core::scene::environment::direction;
 
     const RECT: Rect = Rect { min: pos2(10.0, 20.0), max: pos2(410.0, 220.0) };
 
@@ -196,6 +203,8 @@ mod tests {
     fn angles_and_places_are_inverse_to_each_other() {
         for (azimuth, elevation) in [(0.0, 0.0), (-45.0, 35.0), (120.0, -60.0)] {
             let d = direction(f32::to_radians(azimuth), f32::to_radians(elevation));
+            let at = place_at(RECT, azimuth.into(), elevation.into());
+            assert!((at - place_of(RECT, d)).length() < 1e-2);
             let [a, e] = angles_of(RECT, place_of(RECT, d));
             assert!((a - f64::from(azimuth)).abs() < 0.11 && (e - f64::from(elevation)).abs() < 0.11, "{a} {e}");
         }

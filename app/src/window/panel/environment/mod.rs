@@ -11,6 +11,8 @@ mod sky;
 mod studio;
 mod tone;
 
+pub use tone::expose;
+
 use eframe::egui;
 
 use super::Context;

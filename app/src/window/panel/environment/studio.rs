@@ -9,7 +9,7 @@ use eframe::egui::{self, Role, WidgetInfo};
 use super::{number, row_ui};
 use crate::window::panel::row::spec;
 use crate::window::session::Session;
-use crate::window::widget::{columns, name_input, name_ui};
+use crate::window::widget::{columns, name_ui, typed_ui};
 
 const fn backdrop(key: &'static str, label: &'static str, default: [f64; 3], help: &'static str) -> ParamSpec {
     spec(key, label, "nit", Color { max: 10.0, default }, help)
@@ -124,14 +124,14 @@ fn list_ui(ui: &mut egui::Ui, session: &mut Session, studio: &StudioEntry, chose
     let count = studio.boxes.len();
     ui.horizontal_wrapped(|ui| {
         let mut step = None;
-        if ui.button("Add softbox").on_hover_text("A new one at the upper left of the front.").clicked() {
-            step = Some(("Add softbox", Some(SoftBoxEntry { name: free_name(studio), ..SoftBoxEntry::default() })));
+        if ui.button("Add softbox").on_hover_text("A new one where there is room.").clicked() {
+            let lamp = SoftBoxEntry { name: free_name(studio), ..SoftBoxEntry::default() };
+            step = Some(("Add softbox", Some(beside(studio, lamp))));
         }
         let current = studio.boxes.get(*chosen);
         let button =
             |ui: &mut egui::Ui, text: &str| ui.add_enabled(current.is_some(), egui::Button::new(text)).clicked();
         if button(ui, "Duplicate softbox") {
-            // Mirrored: beside the first, not over it.
             let copy = current.cloned().map(|lamp| SoftBoxEntry {
                 name: free_name(studio),
                 azimuth_deg: -lamp.azimuth_deg,
@@ -139,7 +139,7 @@ fn list_ui(ui: &mut egui::Ui, session: &mut Session, studio: &StudioEntry, chose
                 gradient: [-lamp.gradient[0], lamp.gradient[1]],
                 ..lamp
             });
-            step = Some(("Duplicate softbox", copy));
+            step = Some(("Duplicate softbox", copy.map(|lamp| beside(studio, lamp))));
         }
         if button(ui, "Delete softbox") {
             step = Some(("Delete softbox", None));
@@ -163,6 +163,18 @@ fn list_ui(ui: &mut egui::Ui, session: &mut Session, studio: &StudioEntry, chose
 /// Its name, or its number.
 pub fn title(lamp: &SoftBoxEntry, place: usize) -> String {
     if lamp.name.is_empty() { format!("box {}", place + 1) } else { lamp.name.clone() }
+}
+
+/// The softbox, turned until it is not over another.
+fn beside(studio: &StudioEntry, mut lamp: SoftBoxEntry) -> SoftBoxEntry {
+    let near = |azimuth: f64, other: &SoftBoxEntry| {
+        let apart = (azimuth - other.azimuth_deg + 180.0).rem_euclid(360.0) - 180.0;
+        apart.abs() < 15.0 && (lamp.elevation_deg - other.elevation_deg).abs() < 15.0
+    };
+    let turned = |step: u32| (lamp.azimuth_deg + 30.0 * f64::from(step) + 180.0).rem_euclid(360.0) - 180.0;
+    let free = (0..12).map(turned).find(|azimuth| !studio.boxes.iter().any(|other| near(*azimuth, other)));
+    lamp.azimuth_deg = free.unwrap_or(lamp.azimuth_deg);
+    lamp
 }
 
 fn free_name(studio: &StudioEntry) -> String {
@@ -209,22 +221,17 @@ fn box_ui(ui: &mut egui::Ui, session: &mut Session, lamp: &SoftBoxEntry, place: 
     row(&UP, ParamValue::Number(lamp.gradient[1]), |lamp, value| lamp.gradient[1] = number(value));
 }
 
-/// Its name; what is typed counts at once.
+/// Its name; what is typed counts when the field is left.
 fn rename_ui(ui: &mut egui::Ui, session: &mut Session, lamp: &SoftBoxEntry, place: usize) {
     ui.horizontal(|ui| {
         let [names, controls] = columns(ui);
         name_ui(ui, "Box name", false, names);
-        let mut typed = lamp.name.clone();
-        let field = ui.add(egui::TextEdit::singleline(&mut typed).char_limit(40).desired_width(controls));
-        name_input(&field, "Box name", &typed);
-        if field.changed() {
+        if let Some(typed) = typed_ui(ui, "Box name", &lamp.name, controls) {
             edit(session, "Rename softbox", |studio| {
                 if let Some(lamp) = studio.boxes.get_mut(place) {
                     lamp.name = typed;
                 }
             });
-        }
-        if field.lost_focus() {
             session.seal();
         }
     });

@@ -46,7 +46,7 @@ pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
     let hover = "Sets the exposure so that level ground under sky and sun looks as bright as it reflects: a grey card of 18 % \
                  is middle grey. Other lamps do not count.";
     if ui.button("Expose for sky and sun").on_hover_text(hover).clicked() {
-        expose(session, "Exposure");
+        expose(session, "Exposure", "");
         session.seal();
     }
     row_ui(ui, session, (&TONE, "Tone map"), ParamValue::Choice(tone.number() as usize), |document, value| {
@@ -58,10 +58,10 @@ pub fn ui(ui: &mut egui::Ui, session: &mut Session) {
     });
 }
 
-/// Sets the exposure for what shines from infinitely far away, as a part of the step `label`.
-pub fn expose(session: &mut Session, label: &str) {
+/// Sets the exposure for what shines from infinitely far away, as a part of the step `label` about `target`.
+pub fn expose(session: &mut Session, label: &str, target: &str) {
     if let Some(ev) = exposure_ev(session.scene()) {
-        session.edit(label, "", |document| document.view.exposure_ev = ev);
+        session.edit(label, target, |document| document.view.exposure_ev = ev);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::number::short;
 use crate::window::lights::{self, LightAct};
 use crate::window::panel::row::{number, spec};
 use crate::window::session::Session;
-use crate::window::widget::{Change, choice_ui, columns, name_input, name_ui, param_ui};
+use crate::window::widget::{Change, choice_ui, columns, name_ui, param_ui, typed_ui};
 
 const fn range(min: f64, max: f64, default: f64) -> ParamKind {
     ParamKind::Number { min, max, default }
@@ -145,18 +145,8 @@ impl Editor<'_> {
             ui.horizontal(|ui| {
                 let [names, controls] = columns(ui);
                 name_ui(ui, label, false, names);
-                let id = ui.scope_id().with(label);
-                // What is typed counts when the field is left.
-                let mut typed = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| text.clone());
-                let field = ui.add(egui::TextEdit::singleline(&mut typed).desired_width(controls));
-                name_input(&field, label, &typed);
-                if field.has_focus() {
-                    ui.data_mut(|data| data.insert_temp(id, typed.clone()));
-                } else {
-                    ui.data_mut(|data| data.remove::<String>(id));
-                }
-                if field.lost_focus() && typed != text {
-                    self.call(label, typed.trim());
+                if let Some(typed) = typed_ui(ui, label, &text, controls) {
+                    self.call(label, &typed);
                 }
             });
         }

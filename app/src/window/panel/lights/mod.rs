@@ -33,7 +33,7 @@ impl LightsPanel {
 /// The choice of the light that the picture shows.
 pub fn source_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     let sources = Source::of_scene(context.session.scene());
-    let titles: Vec<&str> = sources.iter().map(Source::title).collect();
+    let titles: Vec<String> = sources.iter().map(Source::title).collect();
     let chosen = sources.iter().position(|source| source == context.aids.source()).unwrap_or(0);
     ui.horizontal(|ui| {
         let [names, controls] = columns(ui);
@@ -45,8 +45,12 @@ pub fn source_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
             context.aids.show(source.clone());
         }
     });
-    if chosen != 0 && !drawn_on_device(context.session.layers()) && !context.reference.is_on() {
-        let text = "Methods on the processor show all light; the reference shows it alone.";
+    let compared = context.compare.view().is_some();
+    if chosen != 0 && (compared || !drawn_on_device(context.session.layers()) && !context.reference.is_on()) {
+        let text = match compared {
+            true => "Comparisons show all light.",
+            false => "Methods on the processor show all light; the reference shows it alone.",
+        };
         ui.label(egui::RichText::new(text).small().color(ui.visuals().warn_fg_color));
     }
 }

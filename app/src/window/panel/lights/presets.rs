@@ -69,7 +69,7 @@ impl PresetSection {
                 }
             }
         });
-        let words = "A click lights the subject by a preset: all lights are replaced. A right click on one of your own deletes it.";
+        let words = "A click lights the subject by a preset: all lights are replaced, the environment gets its strength. A right click on one of your own deletes it.";
         ui.add(egui::Label::new(egui::RichText::new(words).small().weak()).wrap());
         self.own_ui(ui, context);
     }

@@ -12,15 +12,15 @@ const LINE: egui::Vec2 = vec2(126.0, 15.0);
 const PATCH: f32 = 22.0;
 const MARGIN: f32 = 6.0;
 
-/// Shows the legend of the mode at the lower right of the picture, and over the picture whose light it is.
-pub fn ui(ui: &mut egui::Ui, rect: Rect, aids: &Aids) {
+/// Shows the legend of the mode at the lower right of the picture, and whose light it is where that is `honoured`.
+pub fn ui(ui: &mut egui::Ui, rect: Rect, aids: &Aids, honoured: bool) {
     let lines = lines(aids.mode);
     if !lines.is_empty() {
         let size = vec2(LINE.x, LINE.y * lines.len() as f32) + egui::Vec2::splat(2.0 * MARGIN);
         let place = Align2::RIGHT_BOTTOM.align_size_within_rect(size, rect.shrink(8.0));
         lines_ui(ui, place, &lines, aids.mode.title());
     }
-    if *aids.source() != Source::All {
+    if honoured && *aids.source() != Source::All {
         let text = format!("Shown light: {}", aids.source().title());
         overlay::line_ui(
             ui,

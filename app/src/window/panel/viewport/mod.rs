@@ -269,8 +269,9 @@ impl ViewportPanel {
             }
             _ => self.readout.clear(),
         }
-        if view.is_none() {
-            legend::ui(ui, rect, context.aids);
+        let honoured = view.is_none() && (context.reference.is_on() || drawn_on_device(context.session.layers()));
+        if view.is_none_or(CompareView::has_sides) {
+            legend::ui(ui, rect, context.aids, honoured);
         }
         if let Some(message) = &shown.message {
             overlay::message_ui(ui, rect, message);

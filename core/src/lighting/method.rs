@@ -302,7 +302,7 @@ mod tests {
     fn methods_are_found_by_name_and_unknown_ones_told_what_there_is() {
         assert_eq!(find(METHODS, "classical").unwrap().info().title, "Classical");
         let error = find(METHODS, "radiosity").unwrap_err().to_string();
-        assert!(error.contains("radiosity") && error.contains("classical, reference"), "{error}");
+        assert!(error.contains("radiosity") && error.contains("classical, impostor, reference"), "{error}");
         let mut ids: Vec<MethodId> = METHODS.iter().map(|m| m.info().id).collect();
         ids.sort_unstable();
         ids.dedup();
@@ -326,7 +326,7 @@ mod tests {
     fn what_no_method_takes_is_refused_in_words() {
         let check = |text: &str| check_sweeps(METHODS, &[text.parse().unwrap()]).unwrap_err().to_string();
         assert!(check("bouncs=1").contains("bounces"));
-        assert!(check("impostor.samples=1").contains("--methods"));
+        assert!(check("radiosity.samples=1").contains("--methods"));
         for text in ["samples", "samples=", "=1", "samples=1,,2", "classical.=1"] {
             assert!(text.parse::<Sweep>().unwrap_err().to_string().contains("[METHOD.]key"), "{text}");
         }

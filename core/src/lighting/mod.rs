@@ -20,7 +20,7 @@ pub use method::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Met
 pub use prepared::{Prepared, Reads, Store};
 
 /// The methods that come with the program, in the order in which they are listed.
-pub static METHODS: Methods<'static> = &[&classical::Classical, &reference::Reference];
+pub static METHODS: Methods<'static> = &[&classical::Classical, &impostor::Impostor, &reference::Reference];
 
 /// Methods that were added by [`register`].
 static ADDED: RwLock<Vec<&'static dyn Method>> = RwLock::new(Vec::new());

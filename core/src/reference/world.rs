@@ -166,6 +166,21 @@ impl World {
         path::trace(self, ray, sampler, waves)
     }
 
+    /// Follows path number `index` from a place in a direction (world, unit), as an eye there sees it; `pixel` sets its random
+    /// numbers apart from those of other directions.
+    pub fn along(&self, origin: Vec3, direction: Vec3, pixel: UVec2, index: u32) -> PathSample {
+        let mut sampler = PathSampler::new(0, pixel, index);
+        let [_, _, z, _] = sampler.next4();
+        let waves = if self.metals.is_some() { Waves::draw(z) } else { Waves::Rgb };
+        path::trace(self, Ray { origin, direction, t_max: f32::INFINITY }, sampler, waves)
+    }
+
+    /// Metres from a place to the nearest surface in a direction (world, unit); `None` for the sky.
+    pub fn distance(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        self.closest(&ray, Sight::Light, 0).map(|hit| hit.t)
+    }
+
     /// The light of the scene.
     pub(super) fn lights(&self) -> &Lights {
         &self.lights

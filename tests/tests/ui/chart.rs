@@ -128,6 +128,8 @@ fn plan() {
     let mut bench = bench("plan");
     let measure =
         |bench: &Bench| !bench.window.get_by_role_and_label(Role::Button, "Measure").accesskit_node().is_disabled();
+    bench.window.get_by_label("13 measurements");
+    bench.click_role(Role::CheckBox, "impostor");
     bench.window.get_by_label("8 measurements");
     bench.window.get_by_role_and_label(Role::TextInput, "Values of classical 1").focus();
     bench.window.run_steps(2);
@@ -153,8 +155,13 @@ fn plan() {
 fn small(workbench: &mut Workbench) {
     let plan = &mut workbench.chart_mut().plan;
     (plan.size, plan.samples) = (UVec2::new(32, 18), 4);
-    for (chosen, sweep) in plan.methods.iter_mut().zip(["samples=2", "samples=1"]) {
-        chosen.sweeps = vec![sweep.into()];
+    for chosen in &mut plan.methods {
+        let (on, sweep) = match chosen.info().id.0 {
+            "classical" => (true, "samples=2"),
+            "reference" => (true, "samples=1"),
+            _ => (false, ""),
+        };
+        (chosen.on, chosen.sweeps) = (on, vec![sweep.into()]);
     }
 }
 
@@ -178,15 +185,19 @@ fn measured() {
 fn arriving() {
     let mut bench = bench("arriving");
     small(bench.workbench());
-    bench.workbench().chart_mut().plan.methods[1].on = false;
+    let of_reference = |workbench: &mut Workbench, on: bool, sweep: &str| {
+        let mut methods = workbench.chart_mut().plan.methods.iter_mut();
+        let chosen = methods.find(|chosen| chosen.info().id.0 == "reference").expect("it is in the plan");
+        (chosen.on, chosen.sweeps) = (on, vec![sweep.into()]);
+    };
+    of_reference(bench.workbench(), false, "");
     bench.window.run_steps(2);
     bench.click_role(Role::Button, "Measure");
     bench.until("it is measured", |workbench| !workbench.chart().is_busy());
     bench.workbench().chart_mut().set_records(Vec::new());
 
     // The first is kept, the second takes longer than anyone waits.
-    let slow = &mut bench.workbench().chart_mut().plan.methods[1];
-    (slow.on, slow.sweeps) = (true, vec!["samples=1048576".into()]);
+    of_reference(bench.workbench(), true, "samples=1048576");
     bench.window.run_steps(2);
     bench.click_role(Role::Button, "Measure");
     bench.until("a record arrives", |workbench| !workbench.chart().records().is_empty());

@@ -118,14 +118,17 @@ mod tests {
         assert_eq!(plan.methods.len(), METHODS.len());
         let labels: Vec<String> = plan.candidates().unwrap().iter().map(Candidate::label).collect();
         assert!(labels.contains(&"classical samples=4".into()) && labels.contains(&"reference samples=16".into()));
-        assert_eq!(labels.len(), 8);
+        // Few and many for each: 5 of those that sample lobes, 3 of paths.
+        assert_eq!(labels.len(), 13);
     }
 
     #[test]
     fn sweeps_multiply_and_empty_ones_and_methods_that_are_off_count_for_nothing() {
         let mut plan = Plan::new(METHODS);
-        plan.methods[1].on = false;
-        plan.methods[1].sweeps = vec!["nonsense".into()];
+        for other in &mut plan.methods[1..] {
+            other.on = false;
+            other.sweeps = vec!["nonsense".into()];
+        }
         plan.methods[0].sweeps =
             vec!["classical.samples=0, 4".into(), " ".into(), "masking=correlated,separable".into()];
         assert_eq!(plan.candidates().unwrap().len(), 4);

@@ -178,6 +178,12 @@ pub struct PreparedMaps<'a> {
 impl<'a> PreparedMaps<'a> {
     /// The cubes of an environment; `None` where they were not made.
     pub fn new(prepared: &'a Prepared, environment: &Environment) -> Option<PreparedMaps<'a>> {
+        let maps = PreparedMaps::unturned(prepared)?;
+        Some(PreparedMaps { scale: maps.scale * environment.scale(), turn: Turn::by(environment.rotation), ..maps })
+    }
+
+    /// The cubes as they were made, neither turned nor scaled.
+    pub fn unturned(prepared: &'a Prepared) -> Option<PreparedMaps<'a>> {
         let (scale, width) = (*prepared.floats("scale").first()?, *prepared.whole("width").first()?);
         let sizes = CubeSizes::full(width);
         let radiance = |name| CubeMap::new(sizes.radiance, sizes.levels(), prepared.halves(name));
@@ -188,8 +194,8 @@ impl<'a> PreparedMaps<'a> {
             irradiance: CubeMap::new(IRRADIANCE_FACE, 1, prepared.halves("irradiance")),
             sources: prepared.floats("sources"),
             wide_alpha: wide_alpha(width, shading_block(width)),
-            scale: scale * environment.scale(),
-            turn: Turn::by(environment.rotation),
+            scale: Vec3::splat(scale),
+            turn: Turn::by(0.0),
         })
     }
 

@@ -27,7 +27,7 @@ use crate::surface::ggx::albedo::{ALBEDO_ALPHA, ALBEDO_MU, ALBEDO_ROOT_MIN};
 use crate::surface::ggx::reflection::{CURVE_SIZE, CosineWeights, sample_curve};
 use crate::surface::layered;
 
-pub use cubes::{CubeSizes, IRRADIANCE_FACE, cube_scale};
+pub use cubes::{CubeSizes, IRRADIANCE_FACE, PreparedMaps, cube_scale, prepare as prepare_map};
 pub use evaluate::{Lobes, Maps, MeanFresnel, OVERLAP, environment, footprint, prefilter};
 pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 

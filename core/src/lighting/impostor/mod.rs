@@ -5,7 +5,10 @@
 //! the middle sees the same place. Solvers, their failures and figures are in `README.md`. Positions are relative to the
 //! middle of the cube.
 
+mod distances;
 mod march;
+mod method;
+mod probe;
 mod proxy;
 mod secant;
 #[cfg(test)]
@@ -14,6 +17,9 @@ mod tests;
 use glam::Vec3;
 
 use crate::leaf::Leaf;
+
+pub use distances::DistanceCube;
+pub use method::{ID, Impostor, PARAMS};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {
@@ -84,8 +90,19 @@ impl Solver {
         Solver::March,
     ];
 
+    /// Their names in files and on the command line.
+    pub const IDS: [&'static str; 9] = {
+        let mut ids = [""; 9];
+        let mut i = 0;
+        while i < ids.len() {
+            ids[i] = Solver::ALL[i].id();
+            i += 1;
+        }
+        ids
+    };
+
     /// Name in files and on the command line.
-    pub fn id(self) -> &'static str {
+    pub const fn id(self) -> &'static str {
         match self {
             Solver::Classical => "classical",
             Solver::Sphere => "sphere",

@@ -1,0 +1,239 @@
+//! The method: the classical evaluation over the light of a probe, each lookup in the direction in which the probe sees what
+//! its ray meets.
+
+use glam::{Vec2, Vec3};
+
+use super::probe::{self, Probe};
+use super::{Effort, Found, Solver, level, solve};
+use crate::job::Handle;
+use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
+use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
+use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::reference::{SurfacePoint, World};
+
+/// Id of the method, as documents name it.
+pub const ID: &str = "impostor";
+
+/// The method as others see it.
+#[derive(Debug)]
+pub struct Impostor;
+
+const SOLVER: ParamSpec = ParamSpec {
+    key: "solver",
+    label: "Solver",
+    unit: "",
+    kind: ParamKind::Choice { options: &Solver::IDS, default: Solver::Secant as usize },
+    help: "How the place that a reflection meets is searched. classical: not at all; sphere, box: a simple body stands for the \
+           surroundings; march finds what the others lose at silhouettes.",
+    affects: Affects::Frame,
+};
+
+const REFINEMENTS: ParamSpec = ParamSpec {
+    key: "refinements",
+    label: "Refinements",
+    unit: "",
+    kind: ParamKind::Integer { min: 0, max: 64, default: 2 },
+    help: "Steps after the first guesses.",
+    affects: Affects::Frame,
+};
+
+const STEPS: ParamSpec = ParamSpec {
+    key: "steps",
+    label: "Steps",
+    unit: "",
+    kind: ParamKind::Integer { min: 1, max: 256, default: 24 },
+    help: "Places that march looks at along a ray.",
+    affects: Affects::Frame,
+};
+
+const TOLERANCE: ParamSpec = ParamSpec {
+    key: "tolerance",
+    label: "Tolerance",
+    unit: "",
+    kind: ParamKind::Number { min: 1e-4, max: 10.0, default: 0.05 },
+    help: "Share of its distance by which a place may miss the surface; beyond it the reflection is looked up as if it came \
+           from infinitely far away.",
+    affects: Affects::Frame,
+};
+
+const RESOLUTION: ParamSpec = ParamSpec {
+    key: "resolution",
+    label: "Resolution",
+    unit: "texels",
+    kind: ParamKind::Integer { min: 16, max: 1024, default: 128 },
+    help: "Along the edge of a face of the probe.",
+    affects: Affects::Prepare,
+};
+
+const PATHS: ParamSpec = ParamSpec {
+    key: "probe-paths",
+    label: "Probe paths",
+    unit: "per texel",
+    kind: ParamKind::Integer { min: 1, max: 65_536, default: 32 },
+    help: "Paths that are traced for a texel of the probe.",
+    affects: Affects::Prepare,
+};
+
+/// Settings of this method: the last are those of `classical`.
+pub const PARAMS: &[ParamSpec] = &[
+    SOLVER,
+    REFINEMENTS,
+    STEPS,
+    TOLERANCE,
+    RESOLUTION,
+    PATHS,
+    classical::PARAMS[0],
+    classical::PARAMS[1],
+    classical::PARAMS[2],
+    classical::PARAMS[3],
+    classical::PARAMS[4],
+    classical::PARAMS[5],
+];
+
+static INFO: MethodInfo = MethodInfo {
+    id: MethodId(ID),
+    title: "Distance impostor",
+    summary: "Reflections of the surroundings of one object, which sit where they belong: a traced cube map with distances.",
+    params: PARAMS,
+    coverage: Coverage {
+        lamps: Cover::None,
+        environment: Cover::Approximate,
+        indirect_diffuse: Cover::Approximate,
+        indirect_glossy: Cover::Approximate,
+        emission: Cover::None,
+    },
+    reads: Reads::ALL,
+    revision: 1,
+};
+
+impl Method for Impostor {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+
+    fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        probe::prepare(world, whole(settings, &RESOLUTION), whole(settings, &PATHS), job)
+    }
+
+    fn points(&self) -> Option<&dyn ShadePoint> {
+        Some(self)
+    }
+}
+
+/// A whole number of the settings.
+fn whole(settings: &Settings, spec: &ParamSpec) -> u32 {
+    match settings.get(spec.key).unwrap_or(spec.default()) {
+        ParamValue::Integer(number) => u32::try_from(number).unwrap_or(1),
+        _ => 1,
+    }
+}
+
+/// How rays are followed, from settings made of [`PARAMS`].
+fn effort(settings: &Settings) -> Effort {
+    let solver = match settings.get(SOLVER.key) {
+        Some(ParamValue::Choice(index)) => Solver::ALL.get(index).copied().unwrap_or_default(),
+        _ => Solver::default(),
+    };
+    let tolerance = match settings.get(TOLERANCE.key).unwrap_or(TOLERANCE.default()) {
+        ParamValue::Number(number) => number as f32,
+        _ => 0.05,
+    };
+    Effort { solver, refinements: whole(settings, &REFINEMENTS), steps: whole(settings, &STEPS), tolerance }
+}
+
+impl ShadePoint for Impostor {
+    fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
+        let probe = Probe::of(prepared, point.instance());
+        let Some((probe, maps)) = probe.zip(PreparedMaps::unturned(prepared)) else {
+            // No probe knows the surroundings of this object.
+            return point.environment([random, random]);
+        };
+        let FrameSettings { samples, .. } = FrameSettings::new(settings);
+        let lobes = Lobes { samples, rotation: Vec2::new(random[0], random[1]) };
+        let surface = point.surface();
+        let mean = MeanFresnel::of(surface.fresnel);
+        let maps = Localised { maps, x: point.position() - probe.middle, probe, effort: effort(settings) };
+        environment(&maps, &surface, mean, point.base(), point.coat(), point.to_viewer(), point.occlusion(), lobes)
+    }
+}
+
+/// The maps of a probe as a point beside its middle sees them.
+struct Localised<'a> {
+    maps: PreparedMaps<'a>,
+    probe: Probe<'a>,
+    /// From the middle of the probe.
+    x: Vec3,
+    effort: Effort,
+}
+
+impl Localised<'_> {
+    fn follow(&self, direction: Vec3) -> Found {
+        let distances = |d: Vec3| self.probe.distances.distance(d);
+        solve(&distances, &self.probe.extent, self.x, direction, &self.effort)
+    }
+
+    /// Where to look, and how much nearer than to the middle the place is: `t / distance`, 1 without a place.
+    fn look(&self, direction: Vec3) -> (Vec3, f32) {
+        let found = self.follow(direction);
+        let distance = (self.x + found.t * direction).length();
+        let nearer = if found.is_hit && distance > 0.0 { found.t / distance } else { 1.0 };
+        (found.direction(self.x, direction), nearer)
+    }
+}
+
+impl Maps for Localised<'_> {
+    fn radiance(&self, direction: Vec3, at: f32) -> Vec3 {
+        let (seen, nearer) = self.look(direction);
+        self.maps.radiance(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
+    }
+
+    fn dimmed(&self, direction: Vec3, at: f32) -> Vec3 {
+        let (seen, nearer) = self.look(direction);
+        self.maps.dimmed(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
+    }
+
+    fn source_count(&self) -> usize {
+        self.maps.source_count()
+    }
+
+    fn source(&self, index: usize) -> Source {
+        let source = self.maps.source(index);
+        let distance = self.probe.distances.distance(source.direction);
+        if distance <= 0.0 || self.effort.solver == Solver::Classical {
+            return source;
+        }
+        // As bright from every side, and larger from nearer.
+        let toward = distance * source.direction - self.x;
+        let ratio = distance / toward.length().max(0.05 * distance);
+        let direction = toward.try_normalize().unwrap_or(source.direction);
+        Source { direction, power: ratio * ratio * source.power }
+    }
+
+    fn wide_alpha(&self) -> f32 {
+        self.maps.wide_alpha()
+    }
+
+    fn prefiltered(&self, direction: Vec3, at: f32) -> Vec3 {
+        let (seen, nearer) = self.look(direction);
+        let levels = self.maps.prefiltered_levels();
+        // The lobe covers so much less of the surface: a narrower one would from the middle.
+        let alpha = classical::roughness(at, levels).powi(2) * nearer;
+        self.maps.prefiltered(seen, classical::level(alpha.sqrt(), levels))
+    }
+
+    fn irradiance(&self, normal: Vec3) -> Vec3 {
+        self.maps.irradiance(normal)
+    }
+
+    fn radiance_levels(&self) -> f32 {
+        self.maps.radiance_levels()
+    }
+
+    fn prefiltered_levels(&self) -> f32 {
+        self.maps.prefiltered_levels()
+    }
+}
+
+#[cfg(test)]
+#[path = "method_tests.rs"]
+mod tests;

@@ -1,0 +1,90 @@
+use std::sync::Arc;
+
+use glam::{UVec2, Vec3};
+
+use super::*;
+use crate::lighting::Drawing;
+use crate::reference::{Options, View};
+use crate::scene::gallery;
+
+fn settings(solver: Solver) -> Settings {
+    let mut settings = Settings::new(PARAMS);
+    for (key, value) in [("solver", solver.id()), ("resolution", "32"), ("probe-paths", "16"), ("samples", "0")] {
+        settings.set(key, value).unwrap();
+    }
+    settings
+}
+
+fn room() -> World {
+    World::new(&Arc::new(gallery::open("room").unwrap()), Options::default())
+}
+
+/// Mean |a - b| over mean b of the pixels that show the subject.
+fn difference(world: &World, prepared: &Prepared, solver: Solver) -> f64 {
+    const PIXELS: u32 = 40;
+    let settings = settings(solver);
+    let drawing = Drawing::new(&Impostor, world, prepared, &settings).unwrap();
+    let camera = world.scene().cameras[0].clone();
+    let view = View { camera, size: UVec2::splat(PIXELS), seed: 0 };
+    let (mut apart, mut whole, mut count) = (0.0, 0.0, 0);
+    for i in 0..PIXELS * PIXELS {
+        let pixel = UVec2::new(i % PIXELS, i / PIXELS);
+        let mean = |sample: &dyn Fn(u32) -> Vec3, n: u32| (0..n).map(sample).sum::<Vec3>() / n as f32;
+        let first = world.sample(&view, pixel, 0).first;
+        if !first.is_some_and(|first| world.scene().subject.contains(&(first.instance as usize))) {
+            continue;
+        }
+        let drawn = mean(&|index| drawing.sample(&view, pixel, index).radiance, 8);
+        let traced = mean(&|index| world.sample(&view, pixel, index).radiance, 64);
+        apart += f64::from((drawn - traced).abs().element_sum());
+        whole += f64::from(traced.element_sum());
+        count += 1;
+    }
+    assert!(count > 50, "{count} pixels of the subject");
+    apart / whole
+}
+
+#[test]
+fn reflections_of_a_room_sit_where_they_belong() {
+    let world = room();
+    let prepared = Impostor.prepare(&world, &settings(Solver::Secant), &Handle::default()).unwrap();
+    let of = |solver| difference(&world, &prepared, solver);
+    let (classical, secant, march, cuboid) =
+        (of(Solver::Classical), of(Solver::Secant), of(Solver::March), of(Solver::Box));
+    println!("classical {classical:.3}, secant {secant:.3}, march {march:.3}, box {cuboid:.3}");
+    assert!(classical > 0.35, "classical {classical}");
+    // Noise of both sides and texels of 3 degrees.
+    for (solver, error) in [("secant", secant), ("march", march), ("box", cuboid)] {
+        assert!(error < 0.5 * classical, "{solver} {error}, classical {classical}");
+    }
+}
+
+#[test]
+fn a_probe_is_the_same_on_any_number_of_threads_and_ends_when_it_is_told() {
+    let world = room();
+    let settings = settings(Solver::Secant);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| Impostor.prepare(&world, &settings, &Handle::default()).unwrap())
+    };
+    assert_eq!(on(1), on(3));
+    let job = Handle::default();
+    job.cancel();
+    assert_eq!(Impostor.prepare(&world, &settings, &job), Err(MethodError::Cancelled));
+}
+
+#[test]
+fn a_probe_serves_the_subject_else_the_largest_metal_and_nothing_without_surroundings() {
+    let room = gallery::open("room").unwrap();
+    let subject: Vec<u32> = room.subject.iter().map(|i| *i as u32).collect();
+    assert_eq!(probe::served(&room), subject);
+    let mut all = room.clone();
+    all.subject.clear();
+    let served = probe::served(&all);
+    assert!(served.len() <= 1, "{served:?}");
+    let ball = gallery::open("ball").unwrap();
+    assert!(ball.instances.len() > 1 || probe::served(&ball).is_empty());
+    let alone = World::new(&Arc::new(ball), Options::default());
+    let prepared = Impostor.prepare(&alone, &settings(Solver::Secant), &Handle::default()).unwrap();
+    assert_eq!(prepared.is_nothing(), probe::served(alone.scene()).is_empty());
+}

@@ -110,7 +110,12 @@ fn frame(scene: &Scene) -> Frame {
 }
 
 fn reference(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Picture {
+    light_of(passes, scene, Contribution::All)
+}
+
+fn light_of(passes: &Arc<Passes>, scene: &Arc<Scene>, contribution: Contribution) -> Picture {
     let mut renderer = Renderer::with_passes(passes, scene).unwrap_or_else(|e| panic!("{e}"));
+    renderer.show(contribution);
     let camera = scene.cameras[0].clone();
     let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: FRAMES };
     renderer.render(&view).unwrap_or_else(|e| panic!("{e}"))
@@ -275,11 +280,7 @@ fn aids() {
         frame.contribution = contribution;
         assert!(!bench.draw(&frame).settled, "{contribution:?} is another picture");
         bench.settle(&frame);
-        let mut renderer = Renderer::with_passes(&bench.passes, &scene).unwrap_or_else(|e| panic!("{e}"));
-        renderer.show(contribution);
-        let camera = scene.cameras[0].clone();
-        let view = View { size: SIZE, camera, settings: Settings::new(PARAMS), jitter_frames: FRAMES };
-        let wanted = renderer.render(&view).unwrap_or_else(|e| panic!("{e}"));
+        let wanted = light_of(&bench.passes, &scene, contribution);
         assert_ne!(wanted.texels, picture.texels);
         bench.assert_shows(&wanted, TONE, &format!("{contribution:?}"));
     }

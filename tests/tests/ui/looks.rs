@@ -59,6 +59,8 @@ fn every_panel() {
             bench.workbench().hide_panel(pane);
         }
         bench.workbench().show_panel(shown);
+        // Levels are counted by another thread.
+        bench.until("it rests", |workbench| !workbench.is_busy());
         look(&mut bench, &format!("panel_{}", shown.title().to_lowercase()));
     }
     judge(&mut bench);

@@ -61,7 +61,7 @@ impl Aids {
 
     /// Goes back to all light where the light that is shown is no longer there, or muted.
     pub fn follow(&mut self, scene: &Scene) {
-        if !Source::of_scene(scene).contains(&self.source) {
+        if matches!(self.source, Source::Light(..)) && self.contribution(scene) == Contribution::All {
             self.source = Source::All;
         }
     }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burnish_core::document::LightingPreset;
+use burnish_core::document::{self, LightingPreset};
 use burnish_core::file::write_atomic;
 use burnish_core::job::{Job, Outcome};
 use eframe::egui;
@@ -165,9 +165,7 @@ fn keep(preset: LightingPreset, folder: Option<&Path>) -> Result<String, String>
         let known = own.iter().map(|(_, known)| known).chain(LightingPreset::library());
         known.into_iter().any(|known| known.name == name)
     };
-    let name = preset.name.clone();
-    let mut names = std::iter::once(name.clone()).chain((2u64..).map(|number| format!("{name} {number}")));
-    let free = names.find(|candidate| !taken(candidate)).unwrap_or_default();
+    let free = document::free(&preset.name, taken);
     let path = new_file(&free, folder);
     // The id is that of the file: ids of a folder are told apart as its files are.
     let id = path.file_stem().map_or(preset.id.clone(), |stem| stem.to_string_lossy().into_owned());

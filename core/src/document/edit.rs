@@ -377,7 +377,7 @@ impl MaterialEntry {
 }
 
 /// The first of `name`, `name 2`, `name 3` ... that is not taken.
-pub(super) fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
+pub fn free(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.into();
     }

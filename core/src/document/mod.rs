@@ -38,7 +38,7 @@ use crate::surface::fresnel::Form;
 
 pub use by_method::mixed_methods;
 pub use difference::{Difference, Part, Place, differences};
-pub use edit::Assigned;
+pub use edit::{Assigned, free};
 pub use environment::{BackgroundEntry, EnvironmentEntry, GroundEntry, MadeEntry, SkyEntry, SoftBoxEntry, StudioEntry};
 pub use format::{DocumentError, FORMAT, MAX_BYTES, VERSION};
 pub use history::{History, Step, VIEW_LABEL};

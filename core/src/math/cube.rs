@@ -30,6 +30,11 @@ pub fn face_point(d: Vec3) -> (u32, Vec2) {
     if d.z >= 0.0 { (4, Vec2::new(d.x, -d.y) / a.z) } else { (5, Vec2::new(-d.x, -d.y) / a.z) }
 }
 
+/// A direction of the world in the frame of cube maps, which is left-handed, and back.
+pub fn mirrored(d: Vec3) -> Vec3 {
+    Vec3::new(d.x, d.y, -d.z)
+}
+
 /// Solid angle of a small texel at a point of a face over that of one in the face's middle: `(1 + |p|^2)^(-3/2)`.
 pub fn weight(p: Vec2) -> f32 {
     (1.0 + p.length_squared()).powf(-1.5)

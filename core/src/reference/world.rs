@@ -159,11 +159,9 @@ impl World {
     pub fn sample(&self, view: &View, pixel: UVec2, index: u32) -> PathSample {
         let mut sampler = PathSampler::new(view.seed, pixel, index);
         let [x, y, z, _] = sampler.next4();
-        let waves = if self.metals.is_some() { Waves::draw(z) } else { Waves::Rgb };
         let size = view.size.as_vec2();
         let start = view.camera.ray((pixel.as_vec2() + Vec2::new(x, y)) / size, size.x / size.y);
-        let ray = Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY };
-        path::trace(self, ray, sampler, waves)
+        self.follow(start.origin, start.direction, sampler, z)
     }
 
     /// Follows path number `index` from a place in a direction (world, unit), as an eye there sees it; `pixel` sets its random
@@ -171,7 +169,12 @@ impl World {
     pub fn along(&self, origin: Vec3, direction: Vec3, pixel: UVec2, index: u32) -> PathSample {
         let mut sampler = PathSampler::new(0, pixel, index);
         let [_, _, z, _] = sampler.next4();
-        let waves = if self.metals.is_some() { Waves::draw(z) } else { Waves::Rgb };
+        self.follow(origin, direction, sampler, z)
+    }
+
+    /// Follows a path; `u` draws its wavelengths, where there are some.
+    fn follow(&self, origin: Vec3, direction: Vec3, sampler: PathSampler, u: f32) -> PathSample {
+        let waves = if self.metals.is_some() { Waves::draw(u) } else { Waves::Rgb };
         path::trace(self, Ray { origin, direction, t_max: f32::INFINITY }, sampler, waves)
     }
 

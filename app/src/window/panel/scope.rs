@@ -11,7 +11,7 @@ use super::Context;
 use crate::window::scope::{Counted, Exposure};
 use crate::window::still_plot::still_plot;
 use crate::window::theme::CHANNELS;
-use crate::window::widget::{columns, name_ui};
+use crate::window::widget::{columns, name_ui, radio_ui};
 
 /// Room for numbers and notes around a plot, points.
 const AROUND: f32 = 64.0;
@@ -102,9 +102,7 @@ fn modes_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
                 DisplayMode::FalseColor => "Stops of luminance about middle grey as colours, before the tone map.",
                 DisplayMode::Clipping => "Marks where channels are at an end of what the screen shows.",
             };
-            let button = ui.selectable_label(on, mode.title()).on_hover_text(hover);
-            button.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, on, mode.title()));
-            if button.clicked() && !on {
+            if radio_ui(ui, on, mode.title(), hover) {
                 context.aids.mode = mode;
             }
         }

@@ -5,6 +5,13 @@ use eframe::egui::{self, Response, WidgetInfo};
 /// Points of a list that drops down; more is scrolled.
 const LIST_HEIGHT: f32 = 360.0;
 
+/// One of a row of choices; true where it is chosen now.
+pub fn radio_ui(ui: &mut egui::Ui, on: bool, title: &str, hover: &str) -> bool {
+    let button = ui.selectable_label(on, title).on_hover_text(hover);
+    button.widget_info(|| WidgetInfo::selected(egui::accesskit::Role::RadioButton, true, on, title));
+    button.clicked() && !on
+}
+
 /// A list to choose from. Returns the index when another was picked. `name` is the text beside it; without one the list
 /// is called `label`.
 pub fn choice_ui<T: AsRef<str>>(

@@ -13,7 +13,7 @@ use eframe::egui::{self, Align, Layout, Response, vec2};
 use color::{channels_ui, color_ui, hex};
 use number::{LOGARITHMIC, far_above, number_ui, vector_ui};
 
-pub use choice::choice_ui;
+pub use choice::{choice_ui, radio_ui};
 pub use color::screen_color;
 pub use row::{columns, name_input, name_ui, name_widget, reset_ui, typed_ui};
 

@@ -8,7 +8,7 @@ use super::{roughness, shading_block, split, wide_alpha};
 use crate::job::Handle;
 use crate::lighting::cube_map::{CubeMap, CubeMapBuilder, on_face};
 use crate::lighting::{MethodError, Prepared};
-use crate::math::cube;
+use crate::math::cube::{self, mirrored};
 use crate::scene::Environment;
 use crate::scene::environment::Turn;
 
@@ -155,11 +155,6 @@ fn prefiltered_cube(
         job.set_progress(0.6 + 0.4 * level as f32 / levels as f32);
     }
     Ok(builder)
-}
-
-/// Cube maps are left-handed.
-fn mirrored(d: Vec3) -> Vec3 {
-    Vec3::new(d.x, d.y, -d.z)
 }
 
 /// What [`prepare`] made, looked up in the world's directions.

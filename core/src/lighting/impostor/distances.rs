@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::lighting::cube_map::on_face;
-use crate::math::cube;
+use crate::math::cube::{self, mirrored};
 
 /// Neighbouring depths whose ratio is above this belong to different surfaces.
 const JUMP: f32 = 1.15;
@@ -63,11 +63,6 @@ impl<'a> DistanceCube<'a> {
 /// Length of the vector to a point of a face at depth 1.
 fn stretch(p: Vec2) -> f32 {
     (1.0 + p.length_squared()).sqrt()
-}
-
-/// Cube maps are left-handed.
-fn mirrored(d: Vec3) -> Vec3 {
-    Vec3::new(d.x, d.y, -d.z)
 }
 
 #[cfg(test)]

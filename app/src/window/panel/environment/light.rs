@@ -4,7 +4,7 @@ use burnish_core::color::rgb::luminance;
 use burnish_core::document::{BackgroundEntry, EnvironmentEntry, MadeEntry, SkyEntry, StudioEntry};
 use burnish_core::param::{ParamKind, ParamSpec, ParamValue};
 use burnish_core::scene::LightKind;
-use eframe::egui::{self, Role, WidgetInfo};
+use eframe::egui;
 
 use super::{Context, map, number, row_ui, sky, studio, tone};
 use crate::number::short;
@@ -13,7 +13,7 @@ use crate::window::files::typed_path;
 use crate::window::panel::row::spec;
 use crate::window::request::{Purpose, Request};
 use crate::window::session::Session;
-use crate::window::widget::name_input;
+use crate::window::widget::{name_input, radio_ui};
 
 const ROTATION: ParamSpec = spec(
     "rotation",
@@ -129,9 +129,7 @@ impl LightSection {
                 (Kind::Sky, "Sky", "A sky by day by a few numbers, in true nit: the exposure is set for it."),
                 (Kind::Studio, "Studio", "Softboxes before a backdrop."),
             ] {
-                let button = ui.selectable_label(kind == other, title).on_hover_text(hover);
-                button.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, kind == other, title));
-                if button.clicked() && kind != other {
+                if radio_ui(ui, kind == other, title, hover) {
                     self.choose(session, other);
                 }
             }

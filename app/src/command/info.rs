@@ -132,6 +132,7 @@ impl Info {
             environment,
             background: _,
             subject: _,
+            probes: _,
         } = &opened.scene;
         let bounds = opened.scene.bounds();
         Info {

@@ -23,6 +23,8 @@ pub enum Place {
     Object(String),
     /// A light, by its name.
     Light(String),
+    /// A probe, by its name.
+    Probe(String),
     /// The HDRI.
     Map,
     /// How far the environment is turned.
@@ -133,6 +135,13 @@ fn places(document: &Document, materials: &[Material]) -> BTreeMap<Place, Held> 
         let words = format!("{} {} {}{state}", light.shape.title(), digits(light.power), light.unit().symbol());
         all.insert(Place::Light(light.name.clone()), (serde_json::to_value(light).ok(), words));
     }
+    for probe in &document.probes {
+        let words = match probe.position {
+            Some(position) => format!("{} at {} m", probe.source().id(), position.map(digits).join(" ")),
+            None => format!("{} in the middle", probe.source().id()),
+        };
+        all.insert(Place::Probe(probe.name.clone()), (serde_json::to_value(probe).ok(), words));
+    }
     let environment = &document.environment;
     if let Some(source) = &environment.source {
         all.insert(Place::Map, (Some(Value::from(source.as_str())), file_name(source)));
@@ -242,6 +251,7 @@ fn unset(place: &Place, document: &Document, materials: &[Material]) -> String {
         Place::Material(_, Part::Texture(_)) | Place::Assignment(_) | Place::Map | Place::Made => "as the model".into(),
         Place::Object(key) => format!("{key}, visible"),
         Place::Override(_) => "as the scene".into(),
+        Place::Probe(_) => "is not there".into(),
         Place::Light(_) if document.lights.is_some() => "is not there".into(),
         Place::Light(_) => "as the model".into(),
         Place::Lighting(key) => default(document.lighting.live_method().info().params, key).unwrap_or_default(),
@@ -256,6 +266,7 @@ fn group(place: &Place) -> String {
         Place::Material(name, _) => format!("Material {name}"),
         Place::Assignment(_) | Place::Object(_) => "Objects".into(),
         Place::Light(_) => "Lights".into(),
+        Place::Probe(_) => "Probes".into(),
         Place::Map | Place::Rotation | Place::Strength | Place::Tint => "Environment".into(),
         Place::Made | Place::Background | Place::Sun => "Environment".into(),
         Place::Method | Place::Lighting(_) | Place::Override(_) => "Lighting".into(),
@@ -275,6 +286,7 @@ fn label(place: &Place) -> String {
         Place::Assignment(object) => format!("Material of {object}"),
         Place::Object(key) => format!("Object {key}"),
         Place::Light(name) => format!("Light {name}"),
+        Place::Probe(name) => format!("Probe {name}"),
         Place::Map => "HDRI".into(),
         Place::Rotation => "Rotation".into(),
         Place::Strength => "Strength".into(),
@@ -370,6 +382,7 @@ mod tests {
         let added = document.add_material("extra");
         document.assign_material(&["foot".into()], "extra");
         document.edit_object("ring", |entry| entry.hidden = true);
+        document.add_probe(Vec::new());
         assert!(added > 0);
         (opened, document)
     }
@@ -388,9 +401,9 @@ mod tests {
         assert_eq!(named("HDRI"), Some(["as the model".into(), "a.hdr".into()]));
         assert_eq!(named("Material of foot"), Some(["as the model".into(), "extra".into()]));
         assert_eq!(named("Object ring"), Some(["ring, visible".into(), "ring, hidden".into()]));
-        assert_eq!(lines.len(), 15, "{lines:#?}");
+        assert_eq!(lines.len(), 16, "{lines:#?}");
         let groups: BTreeSet<&str> = lines.iter().map(|line| line.group.as_str()).collect();
-        assert_eq!(groups.len(), 8, "{groups:?}");
+        assert_eq!(groups.len(), 9, "{groups:?}");
     }
 
     #[test]

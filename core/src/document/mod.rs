@@ -18,6 +18,7 @@ mod lights;
 mod maps;
 mod open;
 mod paths;
+mod probe;
 mod resolve;
 mod shape;
 mod snapshot;
@@ -50,6 +51,7 @@ pub use open::{
     Missing, MissingKind, Opened, Sources, is_document, load_image, load_map, load_model, open, placeholder, reload,
 };
 pub use paths::{absolute, relative};
+pub use probe::{PATHS as PROBE_PATHS, ProbeEntry, RESOLUTIONS as PROBE_RESOLUTIONS};
 pub use resolve::{Curves, Resolved, resolve};
 pub use shape::Shape;
 pub use snapshot::{CompareEntry, Side, SideEntry, Snapshot};
@@ -84,6 +86,9 @@ pub struct Document {
     /// Lights other than the environment; those of the model when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lights: Option<Vec<LightEntry>>,
+    /// Places from which methods record the surroundings of objects; the method's own when empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<ProbeEntry>,
     /// Saved points of view.
     #[serde(default)]
     pub cameras: Vec<CameraEntry>,

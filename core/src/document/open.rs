@@ -156,6 +156,7 @@ impl Document {
             presets: Vec::new(),
             environment: Default::default(),
             lights: None,
+            probes: Vec::new(),
             cameras: Vec::new(),
             lighting: Default::default(),
             view: Default::default(),

@@ -149,6 +149,8 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
     if let Some(lights) = &document.lights {
         scene.lights = shining(lights, &object_keys);
     }
+    notices.extend(super::probe::unknown(&document.probes, &object_keys));
+    scene.probes.extend(document.probes.iter().map(|probe| probe.probe(&object_keys)));
     if !document.subject.is_empty() {
         let chosen = |key: &String| document.subject.contains(key);
         scene.subject = (0..object_keys.len()).filter(|i| chosen(&object_keys[*i])).collect();

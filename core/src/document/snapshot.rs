@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{
-    Assignment, Document, EnvironmentEntry, LightEntry, LightingEntry, MaterialEntry, ObjectEntry, TextureChoice,
+    Assignment, Document, EnvironmentEntry, LightEntry, LightingEntry, MaterialEntry, ObjectEntry, ProbeEntry, TextureChoice,
     ViewEntry, edit::free,
 };
 use crate::lighting::classical;
@@ -36,6 +36,9 @@ pub struct Snapshot {
     /// Lights other than the environment; those of the model when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lights: Option<Vec<LightEntry>>,
+    /// Places from which methods record the surroundings of objects.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<ProbeEntry>,
     /// Light from infinitely far away.
     #[serde(default)]
     pub environment: EnvironmentEntry,
@@ -166,6 +169,7 @@ impl Document {
             objects: self.objects.clone(),
             presets: self.presets.clone(),
             lights: self.lights.clone(),
+            probes: self.probes.clone(),
             environment: self.environment.clone(),
             lighting: self.lighting.clone(),
             view: self.view.clone(),
@@ -182,12 +186,14 @@ impl Document {
             objects,
             presets,
             lights,
+            probes,
             environment,
             lighting,
             view,
             other: _,
         } = state.clone();
         (self.materials, self.assignments, self.objects, self.presets) = (materials, assignments, objects, presets);
+        self.probes = probes;
         (self.lights, self.environment, self.lighting, self.view) = (lights, environment, lighting, view);
     }
 
@@ -391,7 +397,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.contains("\"maps/a.hdr\"") && text.contains("\"maps/n.png\""), "paths are relative: {text}");
         let mut json: Value = serde_json::from_str(&text).unwrap();
-        json["snapshots"][0]["probes"] = json!([{ "size": 256 }]);
+        json["snapshots"][0]["future"] = json!([{ "size": 256 }]);
         json["compare"]["a"]["opacity"] = json!(0.5);
         std::fs::write(&path, json.to_string()).unwrap();
         Document::read(&path).unwrap().save(&path).unwrap();

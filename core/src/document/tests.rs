@@ -31,7 +31,7 @@ fn a_document_is_read_as_it_was_written_with_fields_it_does_not_know() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("\"maps/a.hdr\""), "paths are relative: {text}");
     let mut json: Value = serde_json::from_str(&text).unwrap();
-    json["probes"] = json!([{ "size": 256 }]);
+    json["future"] = json!([{ "size": 256 }]);
     json["materials"][0]["new-field"] = json!(7);
     std::fs::write(&path, json.to_string()).unwrap();
     let read = Document::read(&path).unwrap();

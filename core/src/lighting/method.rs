@@ -2,6 +2,7 @@
 //!
 //! Callers take the list of methods as an argument, [`super::METHODS`] in the program: a test can append another.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use glam::Vec3;
@@ -10,6 +11,7 @@ use super::prepared::{Prepared, Reads};
 use crate::job::Handle;
 use crate::param::{ParamError, ParamSpec, Settings};
 use crate::reference::{self, SurfacePoint, World};
+use crate::scene::Scene;
 
 /// Name of a method in documents, on the command line and in tables, lower case with hyphens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -130,6 +132,11 @@ pub trait Method: Sync {
     /// job whether it is cancelled at least every 0.1 s, and then ends with [`MethodError::Cancelled`].
     fn prepare(&self, _world: &World, _settings: &Settings, _job: &Handle) -> Result<Prepared, MethodError> {
         Ok(Prepared::nothing())
+    }
+
+    /// The scene as [`Method::prepare`] sees it: what is left out here can be edited without another preparation.
+    fn seen<'a>(&self, scene: &'a Scene, _settings: &Settings) -> Cow<'a, Scene> {
+        Cow::Borrowed(scene)
     }
 
     /// How it draws on the processor; `None` for those that have another way to do so, or none.

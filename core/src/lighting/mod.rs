@@ -8,6 +8,7 @@ pub mod impostor;
 pub mod layers;
 pub mod method;
 pub mod prepared;
+pub mod probe;
 
 use std::sync::{PoisonError, RwLock};
 
@@ -47,4 +48,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL, &impostor::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL];

@@ -33,37 +33,53 @@ pub struct Reads {
     pub environment: bool,
     /// The map of the environment, however it is turned and scaled.
     pub sky: bool,
+    /// Probes.
+    pub probes: bool,
 }
 
 impl Reads {
     /// Nothing: there is no preparation, or the same one for every scene.
     pub const NOTHING: Reads =
-        Reads { geometry: false, materials: false, lights: false, environment: false, sky: false };
-    /// The whole scene.
-    pub const ALL: Reads = Reads { geometry: true, materials: true, lights: true, environment: true, sky: true };
+        Reads { geometry: false, materials: false, lights: false, environment: false, sky: false, probes: false };
+    /// The whole scene, but for probes.
+    pub const ALL: Reads =
+        Reads { geometry: true, materials: true, lights: true, environment: true, sky: true, probes: false };
 
     /// Each part with its name for people.
-    pub fn parts(self) -> [(&'static str, bool); 5] {
+    pub fn parts(self) -> [(&'static str, bool); 6] {
         [
             ("geometry", self.geometry),
             ("materials", self.materials),
             ("lights", self.lights),
             ("environment", self.environment),
             ("map of the environment", self.sky),
+            ("probes", self.probes),
         ]
     }
 }
 
-/// What a method computed: named arrays of numbers.
-#[derive(Clone, Debug, PartialEq)]
+/// What a method computed: named arrays of numbers, and parts that are alike, such as probes.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prepared {
     arrays: Vec<(String, Array)>,
+    parts: Vec<Prepared>,
 }
 
 impl Prepared {
     /// That of a method that needs none.
     pub fn nothing() -> Prepared {
-        Prepared { arrays: Vec::new() }
+        Prepared::default()
+    }
+
+    /// The same with parts, each of which is a preparation by itself.
+    #[must_use]
+    pub fn with_parts(self, parts: Vec<Prepared>) -> Prepared {
+        Prepared { parts, ..self }
+    }
+
+    /// Its parts.
+    pub fn parts(&self) -> &[Prepared] {
+        &self.parts
     }
 
     /// The same with one array more; names must differ.
@@ -104,12 +120,42 @@ impl Prepared {
 
     /// Memory that it keeps.
     pub fn bytes(&self) -> u64 {
-        self.arrays.iter().map(|(_, array)| array.bytes() as u64).sum()
+        let own: u64 = self.arrays.iter().map(|(_, array)| array.bytes() as u64).sum();
+        own + self.parts.iter().map(Prepared::bytes).sum::<u64>()
     }
 
     /// There was nothing to prepare.
     pub fn is_nothing(&self) -> bool {
-        self.arrays.is_empty()
+        self.arrays.is_empty() && self.parts.is_empty()
+    }
+
+    /// All arrays in one list, those of parts as `PART/NAME`.
+    fn flat(&self) -> Vec<(String, Array)> {
+        let of_part = |(place, part): (usize, &Prepared)| {
+            let named = move |(name, array)| (format!("{place}/{name}"), array);
+            part.flat().into_iter().map(named).collect::<Vec<_>>()
+        };
+        let parts = self.parts.iter().enumerate().flat_map(of_part);
+        self.arrays.iter().cloned().chain(parts).collect()
+    }
+
+    /// The inverse of [`Prepared::flat`]; `None` where a part is missing before another.
+    fn of_flat(arrays: Vec<(String, Array)>) -> Option<Prepared> {
+        let mut whole = Prepared::nothing();
+        let mut of_parts: Vec<Vec<(String, Array)>> = Vec::new();
+        for (name, array) in arrays {
+            let Some((part, rest)) = name.split_once('/') else {
+                whole.arrays.push((name, array));
+                continue;
+            };
+            let place: usize = part.parse().ok().filter(|place| *place <= of_parts.len())?;
+            if place == of_parts.len() {
+                of_parts.push(Vec::new());
+            }
+            of_parts[place].push((rest.to_string(), array));
+        }
+        whole.parts = of_parts.into_iter().map(Prepared::of_flat).collect::<Option<_>>()?;
+        Some(whole)
     }
 }
 
@@ -131,12 +177,13 @@ impl Asked {
 
 /// Hash of all that a preparation depends on: the method with its revision, the settings that affect it, the parts of the
 /// scene that it reads.
-pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
+pub fn key(method: &dyn Method, settings_given: &Settings, scene: &Scene) -> String {
     let MethodInfo { reads, revision, .. } = method.info();
-    let Asked { method: id, settings } = Asked::by(method, settings);
+    let Asked { method: id, settings } = Asked::by(method, settings_given);
     let parts: Vec<_> = {
-        use fingerprint::{environment, geometry, lights, materials, sky};
-        let digests: [fn(&Scene) -> Digest; 5] = [geometry, materials, lights, environment, sky];
+        use fingerprint::{environment, geometry, lights, materials, probes, sky};
+        let scene = &*method.seen(scene, settings_given);
+        let digests: [fn(&Scene) -> Digest; 6] = [geometry, materials, lights, environment, sky, probes];
         let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
         read.map(|((name, _), digest)| (name, digest(scene).to_string())).collect()
     };
@@ -165,7 +212,10 @@ impl Store {
     pub fn read(&self, key: &str) -> Option<Prepared> {
         let path = self.path(key).filter(|path| path.exists())?;
         let container = Container::read(&path, KIND, MAX_BYTES).ok()?;
-        (container.header.get("key")?.as_str()? == key).then(|| Prepared { arrays: container.into_arrays() })
+        if container.header.get("key")?.as_str()? != key {
+            return None;
+        }
+        Prepared::of_flat(container.into_arrays())
     }
 
     /// Keeps a preparation.
@@ -174,7 +224,7 @@ impl Store {
         let remedy = "free some space, or allow writing there";
         std::fs::create_dir_all(folder).map_err(|e| FileError::new(folder, e.to_string(), remedy))?;
         let header = json!({ "key": key, "software": concat!("Burnish ", env!("CARGO_PKG_VERSION")) });
-        Container::of_arrays(KIND, header, prepared.arrays.clone()).write(&path)
+        Container::of_arrays(KIND, header, prepared.flat()).write(&path)
     }
 
     /// The preparation of a scene under its [`key`]: read, or computed and kept. One that cannot be kept is given all the same.

@@ -10,7 +10,7 @@ use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    Background, Camera, Environment, Ground, Image, Instance, Light, LightKind, Mesh, Projection, Scene, Texels,
+    Background, Camera, Environment, Ground, Image, Instance, Light, LightKind, Mesh, Probe, Projection, Scene, Texels,
 };
 use crate::material::{AlphaMode, Material, Reflectance, Sampler, TextureRef};
 
@@ -60,6 +60,8 @@ impl Fingerprint {
             environment: _,
             background,
             subject: _,
+            // Paths do not meet them.
+            probes: _,
         } = scene;
         Fingerprint {
             geometry: geometry(scene),
@@ -90,6 +92,11 @@ pub fn materials(scene: &Scene) -> Digest {
 /// The hash of the lights.
 pub fn lights(scene: &Scene) -> Digest {
     digest(|h| h.list(&scene.lights, Sponge::light))
+}
+
+/// The hash of the probes.
+pub fn probes(scene: &Scene) -> Digest {
+    digest(|h| h.list(&scene.probes, Sponge::probe))
 }
 
 /// The hash of the environment.
@@ -246,6 +253,16 @@ impl Sponge {
         }
         [camera, reflections, shadows].into_iter().for_each(|switch| self.flag(*switch));
         self.list(unlit, |h, instance| h.count(*instance));
+    }
+
+    fn probe(&mut self, probe: &Probe) {
+        let Probe { name: _, position, extent, resolution, source, paths, serves } = probe;
+        self.option(*position, Sponge::color);
+        self.option(*extent, Sponge::color);
+        self.option(*resolution, Sponge::word);
+        self.option(*paths, Sponge::word);
+        self.word(*source as u32);
+        self.list(serves, |h, instance| h.count(*instance));
     }
 
     fn environment(&mut self, environment: &Environment) {

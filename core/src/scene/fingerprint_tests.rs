@@ -43,6 +43,7 @@ fn scene() -> Scene {
         environment: Some(Arc::new(Environment::new("sky", 2, 1, vec![Vec3::ONE; 2]))),
         background: Background::default(),
         subject: vec![0],
+        probes: vec![],
     }
 }
 

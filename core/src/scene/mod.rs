@@ -7,17 +7,19 @@ pub mod gallery;
 mod light;
 pub mod photometry;
 mod pick;
+mod probe;
 mod validate;
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
-use crate::material::Material;
+use crate::material::{Material, Reflectance};
 
 pub use environment::{Background, Ground};
 pub use light::{Light, LightKind};
 pub use pick::{Picked, Ray};
+pub use probe::{Probe, ProbeSource};
 pub use validate::Fault;
 
 /// Everything that a picture is made from.
@@ -45,6 +47,8 @@ pub struct Scene {
     pub background: Background,
     /// Indices of the instances that a picture is about, on which errors are reported; all when empty.
     pub subject: Vec<usize>,
+    /// Places from which methods record the surroundings of objects; one in the middle of the subject when empty.
+    pub probes: Vec<Probe>,
 }
 
 /// Indexed triangles in local space. Attribute lists are as long as `positions`, or empty where absent.
@@ -215,14 +219,40 @@ impl Scene {
 
     /// Box around what a picture is about: the visible instances of the subject, of all where that has none.
     pub fn subject_bounds(&self) -> Bounds {
-        let of = |index: usize| self.instances.get(index).filter(|instance| instance.visible);
+        let visible = |index: &usize| self.instances.get(*index).is_some_and(|instance| instance.visible);
         let around = |indices: &mut dyn Iterator<Item = usize>| {
-            indices
-                .filter_map(of)
-                .fold(Bounds::EMPTY, |bounds, instance| bounds.joined(instance.bounds(&self.meshes[instance.mesh])))
+            self.bounds_of(&indices.filter(visible).collect::<Vec<_>>())
         };
         let subject = around(&mut self.subject.iter().copied());
         if subject.is_empty() { around(&mut (0..self.instances.len())) } else { subject }
+    }
+
+    /// The instances that a probe serves where it names none: the subject; where that is everything or nothing, the largest metal
+    /// object. Empty where there is no surrounding.
+    pub fn served(&self) -> Vec<usize> {
+        let seen: Vec<usize> = (0..self.instances.len()).filter(|i| self.instances[*i].visible).collect();
+        let subject: Vec<usize> = seen.iter().copied().filter(|i| self.subject.contains(i)).collect();
+        let served = match subject.len() {
+            0 => self.largest_metal(&seen).into_iter().collect(),
+            all if all == seen.len() => self.largest_metal(&seen).into_iter().collect(),
+            _ => subject,
+        };
+        if served.len() == seen.len() { Vec::new() } else { served }
+    }
+
+    fn largest_metal(&self, among: &[usize]) -> Option<usize> {
+        let is_metal = |i: &usize| {
+            let material = &self.materials[self.instances[*i].material];
+            matches!(material.reflectance, Reflectance::Preset { .. }) || material.metallic >= 0.5
+        };
+        let size = |i: &usize| self.bounds_of(&[*i]).radius();
+        among.iter().copied().filter(is_metal).max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// Box around some instances, in world space; indices out of range count for nothing.
+    pub fn bounds_of(&self, instances: &[usize]) -> Bounds {
+        let boxes = instances.iter().filter_map(|i| self.instances.get(*i));
+        boxes.map(|instance| instance.bounds(&self.meshes[instance.mesh])).fold(Bounds::EMPTY, Bounds::joined)
     }
 
     /// Triangles of all instances.

@@ -46,6 +46,14 @@ impl Scene {
         }
         let subject = self.subject.iter().all(|i| *i < self.instances.len());
         faults.at("subject".into()).unless(subject, "an index is out of range");
+        for (i, probe) in self.probes.iter().enumerate() {
+            let mut at = faults.at(format!("probe {i} '{}'", probe.name));
+            at.unless(probe.position.is_none_or(Vec3::is_finite), "the position is not finite");
+            let sound = |extent: Vec3| extent.is_finite() && extent.min_element() > 0.0;
+            at.unless(probe.extent.is_none_or(sound), "the extent is not positive");
+            at.unless(probe.resolution != Some(0) && probe.paths != Some(0), "it has no texels or paths");
+            at.unless(probe.serves.iter().all(|i| *i < self.instances.len()), "an index is out of range");
+        }
         if let Some(environment) = &self.environment {
             check_environment(environment, &mut faults.at("environment".into()));
         }

@@ -42,6 +42,14 @@ impl Document {
                 self.objects.extend(new);
             }
             Place::Light(name) => self.copy_light(name, from),
+            Place::Probe(name) => {
+                let new = from.probe(name).cloned();
+                match (self.probe_mut(name), new) {
+                    (Some(own), Some(new)) => *own = new,
+                    (None, Some(new)) => self.probes.push(new),
+                    (_, None) => self.remove_probe(name),
+                }
+            }
             Place::Map => self.environment.source.clone_from(&from.environment.source),
             Place::Rotation => self.environment.rotation_deg = from.environment.rotation_deg,
             Place::Strength => self.environment.strength = from.environment.strength,

@@ -1,15 +1,18 @@
 //! The method: the classical evaluation over the light of a probe, each lookup in the direction in which the probe sees what
 //! its ray meets.
 
+use std::borrow::Cow;
+
 use glam::{Vec2, Vec3};
 
-use super::probe::{self, Probe};
 use super::{Effort, Found, Solver, level, solve};
 use crate::job::Handle;
 use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
+use crate::lighting::probe::{self, Defaults, Probe, Probes, Sites};
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
 use crate::reference::{SurfacePoint, World};
+use crate::scene::Scene;
 
 /// Id of the method, as documents name it.
 pub const ID: &str = "impostor";
@@ -102,8 +105,8 @@ static INFO: MethodInfo = MethodInfo {
         indirect_glossy: Cover::Approximate,
         emission: Cover::None,
     },
-    reads: Reads::ALL,
-    revision: 1,
+    reads: Reads { probes: true, ..Reads::ALL },
+    revision: 2,
 };
 
 impl Method for Impostor {
@@ -112,12 +115,21 @@ impl Method for Impostor {
     }
 
     fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
-        probe::prepare(world, whole(settings, &RESOLUTION), whole(settings, &PATHS), job)
+        probe::prepare(world, &sites(world.scene(), settings), job)
+    }
+
+    fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
+        Cow::Owned(probe::seen::read(scene, &sites(scene, settings)))
     }
 
     fn points(&self) -> Option<&dyn ShadePoint> {
         Some(self)
     }
+}
+
+/// The probes of a scene, from settings made of [`PARAMS`].
+pub fn sites(scene: &Scene, settings: &Settings) -> Sites {
+    Sites::new(scene, Defaults { face: whole(settings, &RESOLUTION), paths: whole(settings, &PATHS) })
 }
 
 /// A whole number of the settings.
@@ -129,7 +141,7 @@ fn whole(settings: &Settings, spec: &ParamSpec) -> u32 {
 }
 
 /// How rays are followed, from settings made of [`PARAMS`].
-fn effort(settings: &Settings) -> Effort {
+pub fn effort(settings: &Settings) -> Effort {
     let solver = match settings.get(SOLVER.key) {
         Some(ParamValue::Choice(index)) => Solver::ALL.get(index).copied().unwrap_or_default(),
         _ => Solver::default(),
@@ -143,18 +155,25 @@ fn effort(settings: &Settings) -> Effort {
 
 impl ShadePoint for Impostor {
     fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
-        let probe = Probe::of(prepared, point.instance());
-        let Some((probe, maps)) = probe.zip(PreparedMaps::unturned(prepared)) else {
-            // No probe knows the surroundings of this object.
-            return point.environment([random, random]);
-        };
+        let effort = effort(settings);
         let FrameSettings { samples, .. } = FrameSettings::new(settings);
         let lobes = Lobes { samples, rotation: Vec2::new(random[0], random[1]) };
-        let surface = point.surface();
-        let mean = MeanFresnel::of(surface.fresnel);
-        let maps = Localised { maps, x: point.position() - probe.middle, probe, effort: effort(settings) };
-        environment(&maps, &surface, mean, point.base(), point.coat(), point.to_viewer(), point.occlusion(), lobes)
+        let (mut sum, mut left) = (Vec3::ZERO, 1.0);
+        for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
+            let Some(maps) = PreparedMaps::unturned(probe.maps) else { continue };
+            let maps = Localised { maps, x: point.position() - probe.middle, probe, effort };
+            sum += weight * reflected(point, &maps, lobes);
+            left -= weight;
+        }
+        // What no probe knows.
+        if left > 1e-4 { sum + left * point.environment([random, random]) } else { sum }
     }
+}
+
+fn reflected(point: &SurfacePoint<'_>, maps: &Localised<'_>, lobes: Lobes) -> Vec3 {
+    let surface = point.surface();
+    let mean = MeanFresnel::of(surface.fresnel);
+    environment(maps, &surface, mean, point.base(), point.coat(), point.to_viewer(), point.occlusion(), lobes)
 }
 
 /// The maps of a probe as a point beside its middle sees them.

@@ -72,19 +72,3 @@ fn a_probe_is_the_same_on_any_number_of_threads_and_ends_when_it_is_told() {
     job.cancel();
     assert_eq!(Impostor.prepare(&world, &settings, &job), Err(MethodError::Cancelled));
 }
-
-#[test]
-fn a_probe_serves_the_subject_else_the_largest_metal_and_nothing_without_surroundings() {
-    let room = gallery::open("room").unwrap();
-    let subject: Vec<u32> = room.subject.iter().map(|i| *i as u32).collect();
-    assert_eq!(probe::served(&room), subject);
-    let mut all = room.clone();
-    all.subject.clear();
-    let served = probe::served(&all);
-    assert!(served.len() <= 1, "{served:?}");
-    let ball = gallery::open("ball").unwrap();
-    assert!(ball.instances.len() > 1 || probe::served(&ball).is_empty());
-    let alone = World::new(&Arc::new(ball), Options::default());
-    let prepared = Impostor.prepare(&alone, &settings(Solver::Secant), &Handle::default()).unwrap();
-    assert_eq!(prepared.is_nothing(), probe::served(alone.scene()).is_empty());
-}

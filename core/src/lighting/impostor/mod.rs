@@ -5,10 +5,8 @@
 //! the middle sees the same place. Solvers, their failures and figures are in `README.md`. Positions are relative to the
 //! middle of the cube.
 
-mod distances;
 mod march;
 mod method;
-mod probe;
 mod proxy;
 mod secant;
 #[cfg(test)]
@@ -18,8 +16,7 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use distances::DistanceCube;
-pub use method::{ID, Impostor, PARAMS};
+pub use method::{ID, Impostor, PARAMS, effort, sites};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {

@@ -1,0 +1,120 @@
+//! Light and distances as a probe records them.
+
+use std::sync::Arc;
+
+use glam::{UVec2, Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::distances::DistanceCube;
+use super::seen::surroundings;
+use super::{Site, Sites};
+use crate::job::Handle;
+use crate::lighting::impostor::Extent;
+use crate::lighting::{MethodError, Prepared, classical};
+use crate::math::sampling::hammersley;
+use crate::reference::{Options, World};
+use crate::scene::{Environment, ProbeSource};
+
+/// Paths that are traced between two looks at the job.
+const ROW_PATHS: u32 = 1 << 14;
+/// Bounces of paths that bring direct light only.
+const DIRECT: u32 = 1;
+/// Most paths for a texel of a probe that is drawn in a moment.
+const RASTER_PATHS: u32 = 8;
+
+/// Records the probes of a scene, one part of the result for each. The same for any number of threads.
+pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, MethodError> {
+    let mut parts = Vec::with_capacity(sites.list.len());
+    let mut around: Option<(&[u32], World)> = None;
+    for site in &sites.list {
+        let world = match around.take() {
+            // Most often all serve the same.
+            Some((served, around)) if served == site.served => around,
+            _ => World::new(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
+        };
+        parts.push(record(&world, site, job)?);
+        job.set_progress(parts.len() as f32 / sites.list.len() as f32);
+        around = Some((&site.served, world));
+    }
+    Ok(Prepared::nothing().with_parts(parts))
+}
+
+/// Records one; `around` is the scene without what it serves.
+fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodError> {
+    let Site { middle, half, face, .. } = *site;
+    let inverse = distances(around, middle, face);
+    let extent = extent(&inverse, face);
+    let map = match site.source {
+        ProbeSource::Traced => panorama(around, middle, (face, site.paths), job)?,
+        ProbeSource::Raster => {
+            let options = Options { bounces: DIRECT, ..*around.options() };
+            panorama(&around.updated(around.scene(), options), middle, (face, site.paths.min(RASTER_PATHS)), job)?
+        }
+    };
+    let Extent { near, far, radius, low, high } = extent;
+    let numbers = [middle, Vec3::new(near, far, radius), low, high, half];
+    Ok(classical::prepare_map(&map, job)?
+        .with("served", site.served.clone())
+        .with("distances", inverse)
+        .with("probe", numbers.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>())
+        .with("face", vec![face]))
+}
+
+fn distances(around: &World, middle: Vec3, face: u32) -> Vec<f32> {
+    (0..6 * face * face)
+        .into_par_iter()
+        .map(|i| {
+            let (side, y, x) = (i / (face * face), i / face % face, i % face);
+            let direction = DistanceCube::direction(face, side, x, y);
+            DistanceCube::kept(face, x, y, around.distance(middle, direction))
+        })
+        .collect()
+}
+
+/// What the distances say as a whole; a room of 1 m where there is only sky, which no ray meets.
+fn extent(inverse: &[f32], face: u32) -> Extent {
+    let cube = DistanceCube::new(face, inverse);
+    let (mut near, mut far, mut sum, mut count) = (f32::MAX, 0.0f32, 0.0, 0u32);
+    let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+    for i in 0..6 * face * face {
+        let direction = DistanceCube::direction(face, i / (face * face), i % face, i / face % face);
+        let distance = cube.distance(direction);
+        if distance > 0.0 {
+            (near, far) = (near.min(distance), far.max(distance));
+            (sum, count) = (sum + f64::from(distance), count + 1);
+            (low, high) = (low.min(distance * direction), high.max(distance * direction));
+        }
+    }
+    if count == 0 {
+        return Extent { near: 1.0, far: 1.0, radius: 1.0, low: Vec3::NEG_ONE, high: Vec3::ONE };
+    }
+    Extent { near, far, radius: (sum / f64::from(count)) as f32, low: low.min(Vec3::ZERO), high: high.max(Vec3::ZERO) }
+}
+
+/// The light of the surroundings as an equirectangular map, four times as wide as a face of the cube.
+fn panorama(around: &World, middle: Vec3, (face, paths): (u32, u32), job: &Handle) -> Result<Environment, MethodError> {
+    let (width, height) = (4 * face, 2 * face);
+    let grid = Environment::new("probe", width, height, Vec::new());
+    let mut texels = vec![Vec3::ZERO; (width * height) as usize];
+    let row = (ROW_PATHS / paths.max(1)).clamp(1, width) as usize;
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    texels.par_chunks_mut(row).enumerate().try_for_each(|(chunk, part)| {
+        if job.is_cancelled() {
+            return Err(MethodError::Cancelled);
+        }
+        for (i, texel) in part.iter_mut().enumerate() {
+            let place = (chunk * row + i) as u32;
+            let (x, y) = (place % width, place / width);
+            let light = (0..paths).map(|path| {
+                let direction = grid.texel_direction(x, y, hammersley(path, paths) + Vec2::splat(0.5 / paths as f32));
+                around.along(middle, direction, UVec2::new(x, y), path).radiance
+            });
+            // What is no number is left out, as a film does.
+            *texel = light.filter(|light| light.is_finite()).sum::<Vec3>() / paths.max(1) as f32;
+        }
+        let done = done.fetch_add(part.len(), std::sync::atomic::Ordering::Relaxed);
+        job.set_progress(0.8 * done as f32 / (width * height) as f32);
+        Ok(())
+    })?;
+    Ok(Environment { texels: texels.into(), ..grid })
+}

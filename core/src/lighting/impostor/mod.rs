@@ -16,7 +16,7 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use method::{ID, Impostor, PARAMS, effort, sites};
+pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, sites};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {

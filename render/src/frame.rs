@@ -16,6 +16,7 @@ use crate::pass::classical::Variant;
 use crate::pass::gbuffer::GBuffer;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
+use crate::probes::ProbeLook;
 use crate::resident::Resident;
 
 /// Textures of one picture size.
@@ -60,6 +61,8 @@ pub(crate) struct Encoding {
     scene_group: wgpu::BindGroup,
     viewer: Vec4,
     samples: u32,
+    /// The settings of probes, where they add to the picture.
+    look: Option<wgpu::BindGroup>,
     /// Lamps throw shadows on a ground that is seen.
     catches: bool,
 }
@@ -70,7 +73,7 @@ impl Encoding {
         resident: &Resident,
         camera: &Camera,
         size: UVec2,
-        settings: &FrameSettings,
+        (settings, look): (&FrameSettings, &ProbeLook),
         jitter: Jitter,
     ) -> Encoding {
         let data = view_data(resident, camera, size, settings, jitter);
@@ -79,7 +82,10 @@ impl Encoding {
         let scene_group = resident.on_gpu.group(&gpu.device, &passes.scene_layout, &uniform);
         let is_seen = matches!(settings.contribution, Contribution::All | Contribution::Environment);
         let catches = is_seen && resident.background.catches && resident.shadows.light_count > 0;
-        Encoding { scene_group, viewer: data.viewer, samples: data.samples, catches }
+        // Their light comes from all sources, and is shown with those.
+        let probed = !resident.probe_groups.is_empty() && settings.contribution == Contribution::All;
+        let look = probed.then(|| passes.impostor.effort(gpu, look));
+        Encoding { scene_group, viewer: data.viewer, samples: data.samples, look, catches }
     }
 
     /// What the surfaces are.
@@ -108,8 +114,13 @@ impl Encoding {
             let groups = with(&targets.catcher_group);
             passes.catcher.encode(encoder, &targets.gbuffer, groups, areas, rows.clone());
         }
-        let variant = Variant { sampled: self.samples > 0, areas };
-        passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows);
+        let variant = Variant { sampled: self.samples > 0, areas, probed: self.look.is_some() };
+        passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows.clone());
+        let Some(look) = &self.look else { return };
+        for probe in &resident.probe_groups {
+            let groups = [&self.scene_group, &targets.gbuffer_group, probe, look];
+            passes.impostor.encode(encoder, &targets.frame, groups, variant.sampled, rows.clone());
+        }
     }
 
     /// Blended surfaces over them.

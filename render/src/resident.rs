@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use burnish_core::lighting::Prepared;
+use burnish_core::lighting::probe::Probes;
 use burnish_core::scene::{Bounds, Environment, Scene};
 use burnish_core::surface::ggx::Masking;
 use glam::Vec3;
@@ -13,6 +15,7 @@ use crate::error::RenderError;
 use crate::pass::classical::light_group;
 use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
+use crate::probes::{self, GpuProbes, Lighting};
 use crate::passes::Passes;
 use crate::scene::{GpuScene, MaterialGroups};
 use crate::tables::{TableCache, Tables};
@@ -51,6 +54,11 @@ pub(crate) struct Resident {
     pub background: BackgroundMap,
     /// Bind group 2 of what lights surfaces.
     pub lights: wgpu::BindGroup,
+    /// What takes the place of the environment.
+    pub lighting: Lighting,
+    /// Bind group 2 of each probe.
+    pub probe_groups: Vec<wgpu::BindGroup>,
+    probes: Option<Arc<GpuProbes>>,
     bounds: Bounds,
     tables: Arc<TableBuffer>,
 }
@@ -76,13 +84,14 @@ impl Loader {
         &mut self,
         scene: &Arc<Scene>,
         masking: Masking,
+        lighting: &Lighting,
         before: Option<&Resident>,
     ) -> Result<Resident, RenderError> {
         let environment = scene.environment.as_ref().ok_or(RenderError::NoEnvironment)?;
         let passes = self.passes.clone();
         let gpu = &passes.gpu;
         let tables = Tables::new(&mut self.tables, scene, masking);
-        let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, before.map(|b| &b.on_gpu))?;
+        let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, lighting, before.map(|b| &b.on_gpu))?;
         let (maps, quality) = self.environments.get(&passes, environment, self.quality)?;
         let bounds = match before {
             Some(before) if same_places(&before.scene, scene) => before.bounds,
@@ -103,7 +112,19 @@ impl Loader {
                 floats: tables.floats,
             }),
         };
-        let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, &tables.buffer);
+        let probes = match (lighting.probes(), before.and_then(|before| before.probes.as_ref())) {
+            (Some(prepared), Some(before)) if Arc::ptr_eq(prepared, &before.prepared) => Some(before.clone()),
+            (Some(prepared), _) => Some(Arc::new(GpuProbes::new(gpu, prepared)?)),
+            (None, _) => None,
+        };
+        let places = match &probes {
+            Some(probes) => probes.places.clone(),
+            None => probes::places(gpu, Probes::of(&Prepared::nothing())),
+        };
+        let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, (&tables.buffer, &places));
+        let each = probes.iter().flat_map(|probes| &probes.each);
+        let group = |probe| passes.impostor.group(gpu, probe, &places, &tables.buffer);
+        let probe_groups = each.map(group).collect();
         let seen = before.map(|before| &before.background);
         let background = BackgroundMap::new(gpu, &passes.background_layout, scene, seen)?;
         gpu.check()?;
@@ -116,6 +137,9 @@ impl Loader {
             shadows,
             background,
             lights,
+            lighting: lighting.clone(),
+            probe_groups,
+            probes,
             bounds,
             tables,
         })
@@ -124,6 +148,13 @@ impl Loader {
     /// Takes over cubes that were prepared in full for an environment; scenes loaded from now on have them.
     pub fn refined(&mut self, environment: &Environment, maps: EnvironmentMaps) {
         self.environments.insert(environment, Arc::new(maps), Quality::Full);
+    }
+}
+
+impl Resident {
+    /// It is of this very scene, lit like this.
+    pub fn is_of(&self, scene: &Arc<Scene>, masking: Masking, lighting: &Lighting) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.masking == masking && self.lighting.is_like(lighting)
     }
 }
 
@@ -142,10 +173,10 @@ fn same_places(a: &Scene, b: &Scene) -> bool {
 /// Prepared environments, the last used first. Turned and scaled copies of one map share its cubes.
 #[derive(Default)]
 struct EnvironmentCache {
-    known: Vec<Prepared>,
+    known: Vec<Cubes>,
 }
 
-struct Prepared {
+struct Cubes {
     texels: Arc<[Vec3]>,
     width: u32,
     maps: Arc<EnvironmentMaps>,
@@ -173,7 +204,7 @@ impl EnvironmentCache {
     fn insert(&mut self, environment: &Environment, maps: Arc<EnvironmentMaps>, quality: Quality) {
         self.known.retain(|prepared| !prepared.is_of(environment));
         let Environment { texels, width, .. } = environment;
-        self.known.insert(0, Prepared { texels: texels.clone(), width: *width, maps, quality });
+        self.known.insert(0, Cubes { texels: texels.clone(), width: *width, maps, quality });
         let mut spare = 0;
         let kept = self.known.iter().skip(1).take_while(|prepared| {
             spare += bytes(&prepared.maps);
@@ -184,7 +215,7 @@ impl EnvironmentCache {
     }
 }
 
-impl Prepared {
+impl Cubes {
     fn is_of(&self, environment: &Environment) -> bool {
         Arc::ptr_eq(&self.texels, &environment.texels) && self.width == environment.width
     }

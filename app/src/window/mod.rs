@@ -46,6 +46,7 @@ pub use files::Folders;
 pub use native::run;
 pub use panel::{Pane, Tool};
 pub use preferences::Preferences;
+pub use preparations::lighting_now;
 pub use reference::{Look, Reference};
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};

@@ -58,6 +58,8 @@ pub const STRUCTS: &[Struct] = &[
     TextureSlot::LAYOUT,
     MaterialData::LAYOUT,
     InstanceData::LAYOUT,
+    ProbeData::LAYOUT,
+    EffortData::LAYOUT,
     LightData::LAYOUT,
 ];
 
@@ -263,6 +265,40 @@ shared! {
         normal1: Vec4,
         normal2: Vec4,
         material: u32,
+        probes: u32,
+        pad1: u32,
+        pad2: u32,
+    }
+}
+
+shared! {
+    /// A probe, and what is known of its surroundings as a whole.
+    pub struct ProbeData {
+        middle: Vec3,
+        index: u32,
+        low: Vec3,
+        near: f32,
+        high: Vec3,
+        far: f32,
+        radius: f32,
+        scale: f32,
+        face: u32,
+        radiance_mips: f32,
+        prefiltered_mips: f32,
+        source_count: u32,
+        wide_alpha: f32,
+        pad0: u32,
+    }
+}
+
+shared! {
+    /// How rays are followed through the surroundings of a probe.
+    pub struct EffortData {
+        solver: u32,
+        refinements: u32,
+        steps: u32,
+        tolerance: f32,
+        show: u32,
         pad0: u32,
         pad1: u32,
         pad2: u32,

@@ -182,6 +182,37 @@ struct InstanceData {
     normal1: vec4f,
     normal2: vec4f,
     material: u32,
+    // A bit for each probe that serves it.
+    probes: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+// A probe, and what is known of its surroundings as a whole.
+struct ProbeData {
+    middle: vec3f,
+    index: u32,
+    low: vec3f,
+    near: f32,
+    high: vec3f,
+    far: f32,
+    radius: f32,
+    scale: f32,
+    face: u32,
+    radiance_mips: f32,
+    prefiltered_mips: f32,
+    source_count: u32,
+    wide_alpha: f32,
+    pad0: u32,
+}
+
+// How rays are followed through the surroundings of a probe.
+struct EffortData {
+    solver: u32,
+    refinements: u32,
+    steps: u32,
+    tolerance: f32,
+    show: u32,
     pad0: u32,
     pad1: u32,
     pad2: u32,

@@ -9,6 +9,7 @@ mod march;
 mod method;
 mod proxy;
 mod secant;
+mod show;
 #[cfg(test)]
 mod tests;
 
@@ -16,7 +17,10 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use method::{ID, Impostor, PARAMS, effort, sites};
+pub use method::{ID, Impostor, PARAMS, effort, show, sites};
+pub use show::{
+    MOST_LOOKUPS, MOST_RATIO, SHOW_ERROR, SHOW_LIGHT, SHOW_LOOKUPS, SHOW_RATIO, Show, error_shown, heat, shown,
+};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {

@@ -68,7 +68,7 @@ impl Site {
             name: probe.name.clone(),
             middle: probe.position.unwrap_or_else(|| scene.bounds_of(&served).center()),
             half: probe.extent.unwrap_or(Vec3::splat(EVERYWHERE)),
-            face: probe.resolution.unwrap_or(defaults.face).max(1),
+            face: probe.resolution.unwrap_or(defaults.face).max(2),
             source: probe.source,
             paths: probe.paths.unwrap_or(defaults.paths).max(1),
             served: served.into_iter().map(|i| i as u32).collect(),

@@ -1,0 +1,170 @@
+//! Adds to surfaces that a probe serves what its surroundings send.
+
+use std::sync::OnceLock;
+
+use crate::device::Gpu;
+use crate::layout::types::EffortData;
+use crate::pass::classical::frame_constants;
+use crate::pass::environment::{cube_sampler, cube_view};
+use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
+use crate::probes::{GpuProbe, ProbeLook};
+use crate::shader;
+
+/// The pipelines, one that looks lobes up once and one that samples them.
+pub struct ImpostorPass {
+    device: wgpu::Device,
+    format: wgpu::TextureFormat,
+    probe_layout: wgpu::BindGroupLayout,
+    effort_layout: wgpu::BindGroupLayout,
+    scene_layout: wgpu::BindGroupLayout,
+    gbuffer_layout: wgpu::BindGroupLayout,
+    module: OnceLock<wgpu::ShaderModule>,
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 2],
+}
+
+impl ImpostorPass {
+    /// Compiles nothing yet. The targets are of `format`, which can be blended.
+    pub fn new(
+        gpu: &Gpu,
+        scene_layout: &wgpu::BindGroupLayout,
+        gbuffer_layout: &wgpu::BindGroupLayout,
+        format: wgpu::TextureFormat,
+    ) -> ImpostorPass {
+        let device = &gpu.device;
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let effort_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("effort"),
+            entries: &[buffer_entry(0, wgpu::ShaderStages::FRAGMENT, uniform)],
+        });
+        ImpostorPass {
+            device: device.clone(),
+            format,
+            probe_layout: probe_layout(device),
+            effort_layout,
+            scene_layout: scene_layout.clone(),
+            gbuffer_layout: gbuffer_layout.clone(),
+            module: OnceLock::new(),
+            pipelines: Default::default(),
+        }
+    }
+
+    /// The pipeline that samples lobes, or looks them up once. Blocks while it is compiled.
+    pub fn pipeline(&self, sampled: bool) -> &wgpu::RenderPipeline {
+        self.pipelines[usize::from(sampled)].get_or_init(|| {
+            let module = self.module.get_or_init(|| shader::IMPOSTOR.module(&self.device));
+            let layouts = [&self.scene_layout, &self.gbuffer_layout, &self.probe_layout, &self.effort_layout].map(Some);
+            let mut constants = frame_constants(self.format);
+            constants.push(("sampled", f64::from(u8::from(sampled))));
+            let sum = wgpu::BlendComponent {
+                src_factor: wgpu::BlendFactor::One,
+                dst_factor: wgpu::BlendFactor::One,
+                operation: wgpu::BlendOperation::Add,
+            };
+            let target = wgpu::ColorTargetState {
+                format: self.format,
+                blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
+                write_mask: wgpu::ColorWrites::ALL,
+            };
+            fullscreen_pipeline(&self.device, "impostor", &layouts, module, target, &constants)
+        })
+    }
+
+    /// A probe as group 2.
+    pub(crate) fn group(
+        &self,
+        gpu: &Gpu,
+        probe: &GpuProbe,
+        places: &wgpu::Buffer,
+        tables: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        let maps = &probe.maps;
+        let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance, &maps.dimmed].map(cube_view);
+        let sampler = cube_sampler(&gpu.device);
+        let resources = [
+            wgpu::BindingResource::TextureView(&cubes[0]),
+            wgpu::BindingResource::TextureView(&cubes[1]),
+            wgpu::BindingResource::TextureView(&cubes[2]),
+            wgpu::BindingResource::Sampler(&sampler),
+            wgpu::BindingResource::TextureView(&cubes[3]),
+            maps.sources.as_entire_binding(),
+            tables.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&probe.inverse_depths),
+            probe.data.as_entire_binding(),
+            places.as_entire_binding(),
+        ];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        let layout = &self.probe_layout;
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("probe"), layout, entries: &entries })
+    }
+
+    /// The settings as group 3.
+    pub(crate) fn effort(&self, gpu: &Gpu, look: &ProbeLook) -> wgpu::BindGroup {
+        let data = EffortData {
+            solver: look.effort.solver as u32,
+            refinements: look.effort.refinements,
+            steps: look.effort.steps,
+            tolerance: look.effort.tolerance,
+            show: look.show as u32,
+            pad0: 0,
+            pad1: 0,
+            pad2: 0,
+        };
+        let buffer = gpu.buffer("effort", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("effort"),
+            layout: &self.effort_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        })
+    }
+
+    /// Adds to some rows of a target.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        groups: [&wgpu::BindGroup; 4],
+        sampled: bool,
+        rows: std::ops::Range<u32>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("impostor"),
+            color_attachments: &[attachment(target, wgpu::LoadOp::Load)],
+            ..Default::default()
+        });
+        pass.set_pipeline(self.pipeline(sampled));
+        pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
+        for (index, group) in groups.into_iter().enumerate() {
+            pass.set_bind_group(index as u32, group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// Layout of what `impostor.wgsl` reads at group 2.
+fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let (fragment, cube) = (wgpu::ShaderStages::FRAGMENT, wgpu::TextureViewDimension::Cube);
+    let float = |filterable| wgpu::TextureSampleType::Float { filterable };
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let sampler = wgpu::BindGroupLayoutEntry {
+        binding: 3,
+        visibility: fragment,
+        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("probe"),
+        entries: &[
+            texture_entry(0, float(true), cube),
+            texture_entry(1, float(true), cube),
+            texture_entry(2, float(true), cube),
+            sampler,
+            texture_entry(4, float(true), cube),
+            buffer_entry(5, fragment, storage),
+            buffer_entry(6, fragment, storage),
+            texture_entry(7, float(false), wgpu::TextureViewDimension::D2Array),
+            buffer_entry(8, fragment, wgpu::BufferBindingType::Uniform),
+            buffer_entry(9, fragment, wgpu::BufferBindingType::Uniform),
+        ],
+    })
+}

@@ -38,7 +38,7 @@ mod user_presets;
 mod widget;
 mod workbench;
 
-pub use aids::{Aids, Source};
+pub use aids::{Aids, ProbeMarks, Source};
 pub use chart::{Chart, ErrorMeasure};
 pub use commands::{Command, Entry, Menu, TABLE};
 pub use compare::{Compare, CompareView, Legend};

@@ -19,6 +19,7 @@ mod lambert;
 mod layered;
 mod math;
 mod micro_normal;
+mod probe;
 mod surface;
 mod tone;
 mod view;
@@ -58,6 +59,7 @@ fn cases() -> Vec<Case> {
     cases.extend(area::cases());
     cases.extend(classical::cases());
     cases.extend(impostor::cases());
+    cases.extend(probe::cases());
     cases
 }
 

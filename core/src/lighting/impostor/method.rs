@@ -129,6 +129,14 @@ impl Method for Impostor {
         probe::prepare(world, &sites(world.scene(), settings), job)
     }
 
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Option<Result<Prepared, MethodError>> {
+        Some(probe::prepare(world, &sites(world.scene(), settings).coarse(), job))
+    }
+
     fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
         Cow::Owned(probe::seen::read(scene, &sites(scene, settings)))
     }

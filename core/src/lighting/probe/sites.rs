@@ -54,6 +54,22 @@ impl Sites {
     }
 }
 
+/// Most texels along an edge, and paths for a texel, of a probe that is made in a part of a second.
+const COARSE: Defaults = Defaults { face: 32, paths: 4 };
+
+impl Sites {
+    /// The same places, recorded in a part of a second.
+    #[must_use]
+    pub fn coarse(mut self) -> Sites {
+        for site in &mut self.list {
+            site.face = site.face.min(COARSE.face);
+            site.paths = site.paths.min(COARSE.paths);
+            site.source = ProbeSource::Raster;
+        }
+        self
+    }
+}
+
 impl Site {
     fn new(scene: &Scene, probe: &Probe, defaults: Defaults) -> Option<Site> {
         let mut served = if probe.serves.is_empty() { scene.served() } else { probe.serves.clone() };

@@ -30,7 +30,7 @@ pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, M
         let world = match around.take() {
             // Most often all serve the same.
             Some((served, around)) if served == site.served => around,
-            _ => World::new(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
+            _ => world.updated(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
         };
         parts.push(record(&world, site, job)?);
         job.set_progress(parts.len() as f32 / sites.list.len() as f32);

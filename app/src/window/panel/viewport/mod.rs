@@ -4,6 +4,7 @@ mod cameras;
 mod compare;
 mod gizmo;
 mod lamps;
+mod probes;
 mod legend;
 mod navigation;
 mod overlay;

@@ -29,8 +29,8 @@ impl Lighting {
         self.prepared.is_some()
     }
 
-    /// The probes that take the place of the environment.
-    pub(crate) fn probes(&self) -> Option<&Arc<Prepared>> {
+    /// What was prepared, where the device draws with it.
+    pub fn prepared(&self) -> Option<&Arc<Prepared>> {
         self.prepared.as_ref()
     }
 

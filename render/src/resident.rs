@@ -112,7 +112,7 @@ impl Loader {
                 floats: tables.floats,
             }),
         };
-        let probes = match (lighting.probes(), before.and_then(|before| before.probes.as_ref())) {
+        let probes = match (lighting.prepared(), before.and_then(|before| before.probes.as_ref())) {
             (Some(prepared), Some(before)) if Arc::ptr_eq(prepared, &before.prepared) => Some(before.clone()),
             (Some(prepared), _) => Some(Arc::new(GpuProbes::new(gpu, prepared)?)),
             (None, _) => None,

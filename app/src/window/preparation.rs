@@ -53,6 +53,8 @@ struct Held {
     key: String,
     prepared: Arc<Prepared>,
     took: Duration,
+    /// Where it fails, for people.
+    warnings: Vec<String>,
 }
 
 /// What a job is to do.
@@ -113,8 +115,8 @@ impl Subject {
         }
         let start = Instant::now();
         let held = |key: String, prepared: Prepared| {
-            let prepared = Arc::new(prepared);
-            Held { method: method.info().id, key, prepared, took: start.elapsed() }
+            let (took, warnings) = (start.elapsed(), method.warnings(scene, &prepared, settings));
+            Held { method: method.info().id, key, prepared: Arc::new(prepared), took, warnings }
         };
         if let Some(kept) = store.read(&key) {
             return Found::Made(held(key, kept));
@@ -282,6 +284,11 @@ impl Preparation {
     /// Memory in bytes and time of what there is.
     pub fn cost(&self) -> Option<(u64, Duration)> {
         self.held.as_ref().map(|held| (held.prepared.bytes(), held.took))
+    }
+
+    /// Where what there is fails, for people.
+    pub fn warnings(&self) -> &[String] {
+        self.held.as_ref().map_or(&[], |held| &held.warnings)
     }
 
     /// Why there is no other.

@@ -1,6 +1,7 @@
 //! The preparations of all methods that light a scene, one for each that looks up another.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use burnish_core::job::Handle;
 use burnish_core::lighting::prepared::Asked;
@@ -111,6 +112,16 @@ impl Preparations {
             self.each.iter().find(|(known, _)| *known == by)?.1.prepared(layer.method)
         };
         layers.iter().map(of).collect()
+    }
+
+    /// Where what there is fails, for people.
+    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.each.iter().flat_map(|(_, preparation)| preparation.warnings())
+    }
+
+    /// Time of what the scene's method has in use, where it took some.
+    pub fn took(&self) -> Option<Duration> {
+        self.each.first().and_then(|(_, preparation)| preparation.cost()).map(|(_, took)| took)
     }
 
     /// Another thread works on one.

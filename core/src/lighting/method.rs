@@ -145,6 +145,11 @@ pub trait Method: Sync {
         None
     }
 
+    /// Where what was prepared fails for a scene, for people: each with what helps.
+    fn warnings(&self, _scene: &Scene, _prepared: &Prepared, _settings: &Settings) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The scene as [`Method::prepare`] sees it: what is left out here can be edited without another preparation.
     fn seen<'a>(&self, scene: &'a Scene, _settings: &Settings) -> Cow<'a, Scene> {
         Cow::Borrowed(scene)

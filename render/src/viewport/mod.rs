@@ -190,10 +190,15 @@ impl Viewport {
         };
         if resident.masking != settings.masking || !self.lighting.is_like(&frame.lighting) {
             let scene = resident.scene.clone();
-            let before = std::mem::replace(&mut self.lighting, frame.lighting.clone());
+            let (before, was_stale) = (std::mem::replace(&mut self.lighting, frame.lighting.clone()), self.stale);
             if let Err(error) = self.load(&scene, settings.masking) {
                 self.lighting = before;
                 return Err(error);
+            }
+            if let (Shown::Still, Some((_, still))) = (self.shown, &mut self.full) {
+                // Something was prepared anew: the picture stays until there is a better one as large.
+                still.restart();
+                self.stale = was_stale;
             }
         }
         let look = ProbeLook::new(&frame.settings);

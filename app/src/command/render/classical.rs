@@ -62,6 +62,9 @@ pub fn run(
     let scene = Arc::new(scene);
     let layers = Layers::of(method, settings.clone());
     let lighting = lighting_now(&layers, &scene, &store(cache), &Handle::default()).map_err(Failure::resources)?;
+    if let Some(prepared) = lighting.prepared() {
+        tell(err, &method.warnings(&scene, prepared, &settings))?;
+    }
     let view = View { size, camera, settings, jitter_frames: frames };
     let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
     renderer.light_by(&lighting).map_err(Failure::resources)?;

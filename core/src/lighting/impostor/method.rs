@@ -137,6 +137,10 @@ impl Method for Impostor {
         Some(probe::prepare(world, &sites(world.scene(), settings).coarse(), job))
     }
 
+    fn warnings(&self, scene: &Scene, prepared: &Prepared, settings: &Settings) -> Vec<String> {
+        probe::warnings(scene, &sites(scene, settings), prepared)
+    }
+
     fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
         Cow::Owned(probe::seen::read(scene, &sites(scene, settings)))
     }

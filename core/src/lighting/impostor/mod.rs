@@ -7,9 +7,11 @@
 
 mod march;
 mod method;
+mod placement;
 mod proxy;
 mod secant;
 mod show;
+mod study;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +19,8 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
+pub use placement::{Placement, place};
+pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 pub use method::{ID, Impostor, PARAMS, effort, show, sites};
 pub use show::{
     MOST_LOOKUPS, MOST_RATIO, SHOW_ERROR, SHOW_LIGHT, SHOW_LOOKUPS, SHOW_RATIO, Show, error_shown, heat, shown,

@@ -10,6 +10,7 @@ mod sites;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod warnings;
 mod weight;
 
 use glam::Vec3;
@@ -21,7 +22,8 @@ use crate::math;
 pub use distances::{DistanceCube, JUMP};
 pub use seen::surroundings;
 pub use sites::{Defaults, MOST, Site, Sites};
-pub use trace::prepare;
+pub use trace::{Surroundings, prepare};
+pub use warnings::warnings;
 pub use weight::{BLEND, FADE, Place, weights};
 
 /// The WGSL twin of weights and distances. The pass supplies `probe_place`, where a probe stands and half its box, and

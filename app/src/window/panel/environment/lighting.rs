@@ -98,6 +98,9 @@ fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bo
             _ => {}
         }
     });
+    for warning in preparation.warnings() {
+        ui.label(RichText::new(warning).small().color(ui.visuals().warn_fg_color));
+    }
     if let Some(fault) = preparation.fault() {
         ui.label(RichText::new(fault).small().color(ui.visuals().error_fg_color));
     }

@@ -161,7 +161,7 @@ fn store(cache: Option<&Path>) -> Store {
 }
 
 /// Applies `--set`.
-fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), Failure> {
+pub fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), Failure> {
     for (key, text) in list {
         settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
     }

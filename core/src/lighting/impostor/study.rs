@@ -8,6 +8,9 @@ use crate::lighting::Prepared;
 use crate::lighting::probe::Probes;
 use crate::reference::{Eye, View, World};
 
+/// A place is another one from this share of its distance on.
+const OFF: f32 = 0.01;
+
 /// A mirrored line of sight, and what it meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorRay {
@@ -19,6 +22,8 @@ pub struct MirrorRay {
     pub direction: Vec3,
     /// Metres to what it meets past the instances that the probe serves; `None` for the sky.
     pub met: Option<f32>,
+    /// The probe sees that place too, within 1 % of its distance; true for the sky.
+    pub is_seen: bool,
 }
 
 /// The errors of many rays.
@@ -32,8 +37,9 @@ pub struct HitErrors {
     pub p95: f32,
     /// Share of the rays without a hit, within the tolerance.
     pub misses: f32,
-    /// Share that ended off the part of the ray before what it meets and just behind: further than 1 % from it, of the distance from the
-    /// probe.
+    /// Share that meet what the probe does not see: no search can find that.
+    pub hidden: f32,
+    /// Share, of the others, that ended before or behind what they meet, by more than 1 % of its distance from the probe.
     pub off: f32,
     /// Distances that were looked up for a ray, mean.
     pub lookups: f32,
@@ -50,7 +56,13 @@ pub fn mirror_rays(world: &World, prepared: &Prepared, view: &View) -> Vec<Mirro
         let normal = point.normal();
         let direction = (2.0 * point.to_viewer().dot(normal) * normal - point.to_viewer()).try_normalize()?;
         let met = world.distance_past(point.position(), direction, probe.maps.whole("served"));
-        Some(MirrorRay { instance: point.instance(), position: point.position(), direction, met })
+        let is_seen = met.is_none_or(|t| {
+            let from_probe = point.position() + t * direction - probe.middle;
+            let (length, toward) = (from_probe.length(), from_probe.normalize_or(direction));
+            let first = world.distance_past(probe.middle, toward, probe.maps.whole("served"));
+            first.is_some_and(|first| (first - length).abs() <= OFF * length)
+        });
+        Some(MirrorRay { instance: point.instance(), position: point.position(), direction, met, is_seen })
     })
     .collect()
 }
@@ -65,7 +77,7 @@ pub fn hit_errors(prepared: &Prepared, rays: &[MirrorRay], effort: &Effort) -> H
         let found = solve(&|d: Vec3| probe.distances.distance(d), &probe.extent, x, ray.direction, effort);
         let wanted = ray.met.map_or(ray.direction, |t| x + t * ray.direction);
         let degrees = apart(found.direction(x, ray.direction), wanted);
-        let off = ray.met.is_some_and(|t| (found.t - t).abs() > 0.01 * wanted.length());
+        let off = ray.is_seen && ray.met.is_some_and(|t| (found.t - t).abs() > OFF * wanted.length());
         Some((degrees, !found.is_hit, off, found.lookups))
     };
     let mut all: Vec<(f32, bool, bool, u32)> = rays.par_iter().filter_map(of).collect();
@@ -80,7 +92,8 @@ pub fn hit_errors(prepared: &Prepared, rays: &[MirrorRay], effort: &Effort) -> H
         median: all[count / 2].0,
         p95: all[count * 95 / 100].0,
         misses: share(|one| one.1),
-        off: share(|one| one.2),
+        hidden: rays.iter().filter(|ray| !ray.is_seen).count() as f32 / rays.len() as f32,
+        off: share(|one| one.2) * count as f32 / rays.iter().filter(|ray| ray.is_seen).count().max(1) as f32,
         lookups: all.iter().map(|one| one.3 as f32).sum::<f32>() / count as f32,
     }
 }

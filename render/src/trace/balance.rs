@@ -127,3 +127,76 @@ fn split<'a>(leaves: &'a mut [Child], full: usize, parts: &mut Vec<&'a mut [Chil
     split(first, full, parts);
     split(second, full, parts);
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use burnish_core::scene::gallery::shape;
+    use burnish_core::scene::{Instance, Mesh, Scene};
+    use burnish_core::trace::Accel;
+    use glam::Affine3A;
+
+    use super::*;
+
+    fn flat(mesh: Mesh, sizes: impl IntoIterator<Item = f32>) -> Flat {
+        let instance = |size: f32| Instance {
+            name: String::new(),
+            mesh: 0,
+            material: 0,
+            world_from_local: Affine3A::from_scale(Vec3::splat(size)),
+            visible: true,
+        };
+        let instances = sizes.into_iter().map(instance).collect();
+        Accel::new(&Scene { meshes: vec![Arc::new(mesh)], instances, ..Scene::default() }).flatten()
+    }
+
+    /// Boxes one within the other, boxes in one place, triangles in one place; and a tree that fits.
+    fn trees() -> [Flat; 4] {
+        let block = || shape::block(Vec3::ONE, 0.0, 1);
+        let mut stacked = block();
+        stacked.indices = stacked.indices.repeat(500);
+        [
+            flat(block(), (0..1_500).map(|i| 1.005_f32.powi(i))),
+            flat(block(), [1.0; 1_500]),
+            flat(stacked, [1.0, 2.0]),
+            flat(shape::sphere(1.0, 40), [1.0]),
+        ]
+    }
+
+    fn most(flat: &Flat) -> usize {
+        waiting(flat, 0) + roots_of_meshes(flat).iter().map(|root| waiting(flat, *root)).max().unwrap_or(0)
+    }
+
+    #[test]
+    fn trees_that_are_lists_come_to_fit() {
+        for (mut flat, fits) in trees().into_iter().zip([false, false, false, true]) {
+            let before = flat.clone();
+            assert_eq!(most(&flat) <= STACK, fits, "{} wait", most(&flat));
+            fit(&mut flat);
+            assert!(most(&flat) <= STACK, "{} wait", most(&flat));
+            assert_eq!(flat == before, fits);
+            for root in std::iter::once(0).chain(roots_of_meshes(&flat)) {
+                let sorted = |flat: &Flat| {
+                    let mut leaves: Vec<u32> = leaves(flat, root).into_iter().map(|(_, leaf)| leaf).collect();
+                    leaves.sort_unstable();
+                    leaves
+                };
+                assert!(sorted(&flat) == sorted(&before), "the same leaves are in it");
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_hold_what_is_below_them() {
+        for mut flat in trees() {
+            fit(&mut flat);
+            for (place, node) in flat.nodes.iter().enumerate() {
+                for (bounds, child) in children(node).filter(|(_, child)| child & FlatNode::LEAF == 0) {
+                    let below = children(&flat.nodes[child as usize]).fold(Bounds::EMPTY, |all, (b, _)| all.joined(b));
+                    assert!(bounds == below, "node {place}: {bounds:?} holds {below:?}");
+                }
+            }
+        }
+    }
+}

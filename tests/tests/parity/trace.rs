@@ -341,6 +341,14 @@ fn deep() {
         println!("{name:<12} {} hits, {differences:?}", found.hits());
         assert!(found.hits() > 500, "{name}: {} hits", found.hits());
     }
+    // Along the axis of rings, through all of their boxes and none of them, to a wall.
+    let places = (0..1_000).map(|i| (0, Affine3A::from_scale(Vec3::splat(1.003_f32.powi(i)))));
+    let wall = (1, Affine3A::from_translation(50.0 * Vec3::Y));
+    let rings = scene([shape::torus(1.0, 0.3, 8, 4), shape::block(Vec3::ONE, 0.0, 1)], places.chain([wall]));
+    let mut random = Random::new(9);
+    let ray = |_| Ray { origin: 0.1 * random.point3(), direction: Vec3::Y, t_max: f32::INFINITY };
+    let found = Found::new(&rings, (0..100).map(ray).collect());
+    assert!(found.gpu.iter().all(|hit| hit.is_some_and(|hit| hit.instance == 1_000)));
 }
 
 /// A device that binds no more than 64 kB.

@@ -24,6 +24,7 @@ pub mod shader;
 mod tables;
 mod textures;
 pub mod times;
+pub mod trace;
 pub mod viewport;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};

@@ -15,8 +15,8 @@ use crate::error::RenderError;
 use crate::pass::classical::light_group;
 use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
-use crate::probes::{self, GpuProbes, Lighting};
 use crate::passes::Passes;
+use crate::probes::{self, GpuProbes, Lighting};
 use crate::scene::{GpuScene, MaterialGroups};
 use crate::tables::{TableCache, Tables};
 

@@ -118,13 +118,37 @@ pub static DISPLAY: Shader = Shader {
     files: &[TYPES, include_str!("pass/display/display.wgsl")],
 };
 
+/// Looks for what rays meet.
+pub static TRACE: Shader = Shader {
+    name: "trace",
+    leaves: &[],
+    files: &[
+        TYPES,
+        TRACE_BINDING,
+        include_str!("trace/numbers.wgsl"),
+        include_str!("trace/trace.wgsl"),
+        include_str!("trace/pass.wgsl"),
+    ],
+};
+
 /// Times reflectance curves.
 pub static TIMES: Shader =
     Shader { name: "times", leaves: &[&fresnel::WGSL], files: &[include_str!("times/times.wgsl")] };
 
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] =
-    &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &IMPOSTOR, &CATCHER, &FORWARD, &ACCUMULATE, &DISPLAY, &TIMES];
+pub static ALL: &[&Shader] = &[
+    &GBUFFER,
+    &SHADOW,
+    &ENVIRONMENT,
+    &CLASSICAL,
+    &IMPOSTOR,
+    &CATCHER,
+    &FORWARD,
+    &ACCUMULATE,
+    &DISPLAY,
+    &TRACE,
+    &TIMES,
+];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "
@@ -140,6 +164,11 @@ const GBUFFER_BINDINGS: &str = "
 @group(1) @binding(2) var words2: texture_2d<u32>;
 @group(1) @binding(3) var words3: texture_2d<u32>;
 @group(1) @binding(4) var depth: texture_depth_2d;
+";
+
+/// The buffer of a `TraceTree`.
+const TRACE_BINDING: &str = "
+@group(0) @binding(0) var<storage, read> trace_words: array<vec4u>;
 ";
 
 /// Functions that leaves ask for and passes that do not light surfaces never call.

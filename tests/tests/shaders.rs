@@ -77,6 +77,12 @@ fn what_is_timed_without_a_curve_is_the_same_in_both_languages() {
 }
 
 #[test]
+fn as_many_children_of_a_tree_wait_as_the_shader_has_places() {
+    let trace = validated("trace", &shader::TRACE.source());
+    assert_eq!(constant(&trace, "TRACE_STACK"), burnish_render::trace::STACK as f64);
+}
+
+#[test]
 fn shared_structs_have_the_same_names_offsets_and_sizes() {
     let module = validated("types", include_str!("../../render/src/layout/types.wgsl"));
     let mut layouter = naga::proc::Layouter::default();

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use burnish_core::file::write_atomic;
 use burnish_core::job::Handle;
-use burnish_core::lighting::impostor::{self, HitErrors, Impostor, Solver};
 use burnish_core::lighting::Method;
+use burnish_core::lighting::impostor::{self, HitErrors, Impostor, Solver};
 use burnish_core::param::Settings;
 use burnish_core::reference::{Options, View as Eyes, World};
 use burnish_render::{Gpu, Lighting, Passes, Renderer, View};
@@ -79,7 +79,8 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     // The cheapest lookups: what searches cost stands out, and is no more than that.
     settings.set("samples", "0").map_err(|e| Failure::usage(e.to_string()))?;
     super::render::assign(&mut settings, &args.set)?;
-    let passes = if args.untimed { None } else { Some(Arc::new(Passes::new(&Gpu::new().map_err(Failure::resources)?))) };
+    let passes =
+        if args.untimed { None } else { Some(Arc::new(Passes::new(&Gpu::new().map_err(Failure::resources)?))) };
     let scenes = if args.scenes.is_empty() { vec!["gallery:room".into()] } else { args.scenes.clone() };
     let mut rows = Vec::new();
     for scene in &scenes {
@@ -88,7 +89,11 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     if let Some(file) = &args.csv {
         write_atomic(file, csv(&rows).as_bytes()).map_err(Failure::resources)?;
     }
-    if args.json { write_json(out, &rows)? } else { write!(out, "{}", table(&rows))? }
+    if args.json {
+        write_json(out, &rows)?
+    } else {
+        write!(out, "{}", table(&rows))?
+    }
     Ok(Exit::Ok)
 }
 
@@ -125,7 +130,12 @@ fn measure(
     let mut timer = match passes {
         Some(passes) => {
             let lighting = Lighting::new(Impostor.info().id, Some(Arc::new(prepared.clone())));
-            Some(Timer::new(passes, &scene, &lighting, View { size: args.size, camera, settings: settings.clone(), jitter_frames: 1 })?)
+            Some(Timer::new(
+                passes,
+                &scene,
+                &lighting,
+                View { size: args.size, camera, settings: settings.clone(), jitter_frames: 1 },
+            )?)
         }
         None => None,
     };
@@ -196,7 +206,8 @@ impl Timer {
 }
 
 fn csv(rows: &[Row]) -> String {
-    let mut text = "scene,solver,refinements,rays,median_deg,p95_deg,misses,hidden,off,lookups,frame_ms,ratio\n".to_string();
+    let mut text =
+        "scene,solver,refinements,rays,median_deg,p95_deg,misses,hidden,off,lookups,frame_ms,ratio\n".to_string();
     for row in rows {
         let Row { scene, solver, refinements, rays, median, p95, misses, hidden, off, lookups, frame_ms, ratio } = row;
         let optional = |value: &Option<f64>| value.map(|value| format!("{value:.4}")).unwrap_or_default();
@@ -211,9 +222,10 @@ fn csv(rows: &[Row]) -> String {
 
 /// A Markdown table.
 fn table(rows: &[Row]) -> String {
-    let mut text = "| scene | search | refinements | median | 95 % | missed | hidden | off | lookups | frame | to classical |\n\
+    let mut text =
+        "| scene | search | refinements | median | 95 % | missed | hidden | off | lookups | frame | to classical |\n\
                     |---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_string();
+            .to_string();
     for row in rows {
         let optional = |value: Option<f64>, unit: &str| value.map_or("-".into(), |value| format!("{value:.2}{unit}"));
         text += &format!(

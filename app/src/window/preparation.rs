@@ -107,7 +107,14 @@ impl Subject {
     }
 
     /// Compares what is held by `known` with the subject; makes another as `wanted`.
-    fn work(&self, known: Option<String>, wanted: Wanted, store: &Store, world: &Mutex<Option<World>>, job: &Handle) -> Found {
+    fn work(
+        &self,
+        known: Option<String>,
+        wanted: Wanted,
+        store: &Store,
+        world: &Mutex<Option<World>>,
+        job: &Handle,
+    ) -> Found {
         let Subject { method, settings, scene } = self;
         let key = key(*method, settings, scene);
         if known.as_ref() == Some(&key) {

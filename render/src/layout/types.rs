@@ -61,6 +61,8 @@ pub const STRUCTS: &[Struct] = &[
     ProbeData::LAYOUT,
     EffortData::LAYOUT,
     LightData::LAYOUT,
+    RayData::LAYOUT,
+    HitData::LAYOUT,
 ];
 
 /// Every shared constant with its value.
@@ -95,6 +97,7 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("CONTRIBUTION_EMISSION", CONTRIBUTION_EMISSION),
     ("CONTRIBUTION_LIGHT", CONTRIBUTION_LIGHT),
     ("SHADOW_NONE", SHADOW_NONE),
+    ("HIT_NONE", HIT_NONE),
 ];
 
 /// Textures of a material, in the order of the `TEXTURE_` constants of `types.wgsl`.
@@ -135,6 +138,8 @@ pub const CONTRIBUTION_EMISSION: u32 = 2;
 pub const CONTRIBUTION_LIGHT: u32 = 3;
 /// `shadow_layer` of a light without a shadow map.
 pub const SHADOW_NONE: u32 = u32::MAX;
+/// Instance of a ray that meets nothing.
+pub const HIT_NONE: u32 = u32::MAX;
 
 shared! {
     /// What changes from frame to frame.
@@ -323,5 +328,28 @@ shared! {
         shadow_depth: f32,
         pad0: u32,
         pad1: u32,
+    }
+}
+
+shared! {
+    /// A ray, as [`burnish_core::trace::Ray`].
+    pub struct RayData {
+        origin: Vec3,
+        t_max: f32,
+        direction: Vec3,
+        pad0: u32,
+    }
+}
+
+shared! {
+    /// What a ray meets, as [`burnish_core::trace::Hit`]; [`HIT_NONE`] for an instance where that is nothing.
+    pub struct HitData {
+        t: f32,
+        instance: u32,
+        triangle: u32,
+        pad0: u32,
+        barycentric: Vec2,
+        pad1: u32,
+        pad2: u32,
     }
 }

@@ -37,6 +37,8 @@ const CONTRIBUTION_EMISSION: u32 = 2u;
 const CONTRIBUTION_LIGHT: u32 = 3u;
 // A light without a shadow map has this first layer.
 const SHADOW_NONE: u32 = 0xffffffffu;
+// Instance of a ray that meets nothing.
+const HIT_NONE: u32 = 0xffffffffu;
 
 struct ViewData {
     clip_from_world: mat4x4f,
@@ -243,4 +245,26 @@ struct LightData {
     shadow_depth: f32,
     pad0: u32,
     pad1: u32,
+}
+
+// Points origin + t direction with 0 <= t < t_max.
+struct RayData {
+    origin: vec3f,
+    t_max: f32,
+    direction: vec3f,
+    pad0: u32,
+}
+
+struct HitData {
+    // Along the ray.
+    t: f32,
+    // Index into the scene, or HIT_NONE.
+    instance: u32,
+    // Place in its mesh.
+    triangle: u32,
+    pad0: u32,
+    // Weights of the second and third corner.
+    barycentric: vec2f,
+    pad1: u32,
+    pad2: u32,
 }

@@ -154,7 +154,8 @@ fn instance_list(scene: &Scene, lighting: &Lighting) -> Vec<InstanceData> {
     instances
 }
 
-fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), RenderError> {
+/// Fails where a storage buffer of so many bytes cannot be bound.
+pub(crate) fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), RenderError> {
     let limits = gpu.device.limits();
     let allowed = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
     if bytes > allowed {

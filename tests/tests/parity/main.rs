@@ -1,7 +1,7 @@
 //! Every WGSL leaf equals its Rust twin on the GPU, over a grid with its limits.
 //!
 //! One file per leaf holds its cases. A leaf without a case fails, and so does a function of a leaf that no case
-//! reaches.
+//! reaches. `trace` compares rays, which are no leaf.
 
 mod area;
 mod blinn_phong;
@@ -22,6 +22,7 @@ mod micro_normal;
 mod probe;
 mod surface;
 mod tone;
+mod trace;
 mod view;
 
 use std::collections::BTreeSet;
@@ -39,6 +40,7 @@ fn main() {
         cases().into_iter().map(|case| trial(case.name, &[Need::Gpu], move || case.run())).collect();
     trials.push(trial("every function of every leaf is compared", &[], every_function_is_compared));
     trials.push(trial("differences over the tolerance are faults", &[], harness::differences_are_faults));
+    trials.extend(trace::trials());
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 

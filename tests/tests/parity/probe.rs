@@ -23,9 +23,13 @@ pub fn cases() -> Vec<Case> {
         })
         .with(HELPERS)
         .within(Tolerance { relative: 1e-4, absolute: 1e-4 }),
-        Case::new("probe: distances between texels, at jumps and before the sky", &probe::WGSL, DISTANCE, directions, |x| {
-            [Vec4::new(DistanceCube::new(FACE, &inverse()).distance(x[0].xyz()), 0.0, 0.0, 0.0)]
-        })
+        Case::new(
+            "probe: distances between texels, at jumps and before the sky",
+            &probe::WGSL,
+            DISTANCE,
+            directions,
+            |x| [Vec4::new(DistanceCube::new(FACE, &inverse()).distance(x[0].xyz()), 0.0, 0.0, 0.0)],
+        )
         .with(HELPERS),
         Case::new("impostor: colours of a search", &impostor::WGSL, SHOWN, searches, |x| {
             let found = Found { t: 0.0, ratio: x[0].x, lookups: x[0].y as u32, is_hit: x[0].z > 0.5 };

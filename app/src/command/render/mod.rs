@@ -102,7 +102,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         None => (&stage, stage.open()?),
     };
     match id {
-        _ if on_device => classical::run(layers.first().method, (&classical, cache.as_deref()), scene, &set, &output, out, err),
+        _ if on_device => {
+            classical::run(layers.first().method, (&classical, cache.as_deref()), scene, &set, &output, out, err)
+        }
         REFERENCE => reference::run(&reference, scene, &set, &output, out, err),
         _ => points::run(layers, (&reference, cache.as_deref()), scene, &set, &output, out, err),
     }

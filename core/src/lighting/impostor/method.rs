@@ -193,10 +193,11 @@ impl ShadePoint for Impostor {
         for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
             let Some(maps) = PreparedMaps::unturned(probe.maps) else { continue };
             let maps = Localised { maps, x: point.position() - probe.middle, probe, effort };
-            sum += weight * match show {
-                Show::Light => reflected(point, &maps, lobes),
-                other => searched(point, &maps, other),
-            };
+            sum += weight
+                * match show {
+                    Show::Light => reflected(point, &maps, lobes),
+                    other => searched(point, &maps, other),
+                };
             left -= weight;
         }
         // What no probe knows.

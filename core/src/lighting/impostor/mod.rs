@@ -19,12 +19,12 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use placement::{Placement, place};
-pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 pub use method::{ID, Impostor, PARAMS, effort, show, sites};
+pub use placement::{Placement, place};
 pub use show::{
     MOST_LOOKUPS, MOST_RATIO, SHOW_ERROR, SHOW_LIGHT, SHOW_LOOKUPS, SHOW_RATIO, Show, error_shown, heat, shown,
 };
+pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {

@@ -36,7 +36,13 @@ pub struct Placement {
 
 /// Finds the fewest places, at most 8, from which 95 % of the rays that leave the served surfaces are found to within `bound` degrees;
 /// where no number does, those with the least error. Each instance index is in range.
-pub fn place(scene: &Scene, served: &[usize], bound: f32, effort: &Effort, job: &Handle) -> Result<Placement, MethodError> {
+pub fn place(
+    scene: &Scene,
+    served: &[usize],
+    bound: f32,
+    effort: &Effort,
+    job: &Handle,
+) -> Result<Placement, MethodError> {
     let points = points(scene, served);
     let indices: Vec<u32> = served.iter().map(|i| *i as u32).collect();
     let around = World::new(&Arc::new(surroundings(scene, &indices)), Options::default());
@@ -60,7 +66,8 @@ pub fn place(scene: &Scene, served: &[usize], bound: f32, effort: &Effort, job: 
 
 /// Points of the surfaces with their normals, evenly over the vertices.
 fn points(scene: &Scene, served: &[usize]) -> Vec<(Vec3, Vec3)> {
-    let meshes: Vec<_> = served.iter().map(|i| (&scene.instances[*i], &scene.meshes[scene.instances[*i].mesh])).collect();
+    let meshes: Vec<_> =
+        served.iter().map(|i| (&scene.instances[*i], &scene.meshes[scene.instances[*i].mesh])).collect();
     let all: usize = meshes.iter().map(|(_, mesh)| mesh.positions.len()).sum();
     let step = all.div_ceil(POINTS).max(1);
     let each = meshes.into_iter().flat_map(|(instance, mesh)| {
@@ -100,7 +107,8 @@ fn spread(points: &[(Vec3, Vec3)], count: usize) -> Vec<Vec3> {
 }
 
 fn nearest(places: &[Vec3], p: Vec3) -> usize {
-    let near = (0..places.len()).min_by(|a, b| places[*a].distance_squared(p).total_cmp(&places[*b].distance_squared(p)));
+    let near =
+        (0..places.len()).min_by(|a, b| places[*a].distance_squared(p).total_cmp(&places[*b].distance_squared(p)));
     near.unwrap_or(0)
 }
 

@@ -86,7 +86,8 @@ pub fn hit_errors(prepared: &Prepared, rays: &[MirrorRay], effort: &Effort) -> H
     if count == 0 {
         return HitErrors::default();
     }
-    let share = |flag: fn(&(f32, bool, bool, u32)) -> bool| all.iter().filter(|one| flag(one)).count() as f32 / count as f32;
+    let share =
+        |flag: fn(&(f32, bool, bool, u32)) -> bool| all.iter().filter(|one| flag(one)).count() as f32 / count as f32;
     HitErrors {
         rays: count,
         median: all[count / 2].0,

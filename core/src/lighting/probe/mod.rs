@@ -34,7 +34,6 @@ pub static WGSL: Leaf = Leaf {
     needs: &[&math::WGSL],
     externs: "fn probe_place(index: u32) -> ProbePlace { return ProbePlace(vec3f(0.0), vec3f(1.0)); }
 fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 { return 1.0; }",
-
 };
 
 /// The probes that were prepared.

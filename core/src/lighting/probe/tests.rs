@@ -150,8 +150,10 @@ fn a_probe_where_it_fails_is_told() {
         let prepared = prepare(&world, &sites, &Handle::default()).unwrap();
         warnings(&scene, &sites, &prepared).join("; ")
     };
-    let at = |position: Vec3| move |s: &mut Scene| {
-        s.probes = vec![scene::Probe { name: "p".into(), position: Some(position), ..Default::default() }];
+    let at = |position: Vec3| {
+        move |s: &mut Scene| {
+            s.probes = vec![scene::Probe { name: "p".into(), position: Some(position), ..Default::default() }];
+        }
     };
     assert_eq!(warned(&|_| ()), "");
     // The walls are 0.12 m thick slabs.

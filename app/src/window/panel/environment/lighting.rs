@@ -70,7 +70,9 @@ fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bo
             (format!("preparing {:.0} %", 100.0 * share), "What there was before stays in use meanwhile.")
         }
         State::Fresh => ("prepared".into(), "What the method looks up was made of this very scene."),
-        State::Draft => ("draft".into(), "Coarse, of this very scene; the whole is made when nothing changes for a moment."),
+        State::Draft => {
+            ("draft".into(), "Coarse, of this very scene; the whole is made when nothing changes for a moment.")
+        }
         State::Stale => {
             ("stale".into(), "The scene or a setting changed since; what was prepared before stays in use.")
         }

@@ -1,7 +1,9 @@
 //! Probes: where the surroundings of objects are recorded, for the methods that look them up from there.
 
 use burnish_core::document::{PROBE_PATHS, PROBE_RESOLUTIONS, ProbeEntry};
-use burnish_core::lighting::impostor;
+use burnish_core::job::{Handle, Job, Outcome};
+use burnish_core::lighting::MethodError;
+use burnish_core::lighting::impostor::{self, Placement};
 use burnish_core::param::{ParamKind, ParamSpec, ParamValue};
 use burnish_core::scene::ProbeSource;
 use eframe::egui::{self, RichText, Role, WidgetInfo};
@@ -70,8 +72,106 @@ const SOURCE: ParamSpec = spec(
 );
 const SOURCES: [&str; 2] = [ProbeSource::ALL[0].id(), ProbeSource::ALL[1].id()];
 
-/// Shows the list, and the chosen probe.
-pub fn ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
+const BOUND: ParamSpec = spec(
+    "bound",
+    "Largest error",
+    "deg",
+    ParamKind::Number { min: 0.05, max: 45.0, default: 1.0 },
+    "Of 95 % of the rays that leave what is served: as few probes are placed as keep it.",
+);
+
+/// The probes of the document, and a search for places.
+pub struct ProbesSection {
+    bound: f64,
+    placing: Option<Placing>,
+    /// What the last search found.
+    told: String,
+}
+
+/// A search for places.
+struct Placing {
+    serves: Vec<String>,
+    job: Job<Result<Placement, MethodError>>,
+}
+
+impl Default for ProbesSection {
+    fn default() -> Self {
+        ProbesSection { bound: 1.0, placing: None, told: String::new() }
+    }
+}
+
+impl ProbesSection {
+    /// Shows the list, the chosen probe, and what places some by itself.
+    pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
+        list_ui(ui, context);
+        let edit = param_ui(ui, &BOUND, ParamValue::Number(self.bound), BOUND.default());
+        match edit.change {
+            Some(Change::Set(ParamValue::Number(bound))) => self.bound = bound,
+            Some(Change::Reset) => self.bound = 1.0,
+            _ => {}
+        }
+        self.poll(context);
+        ui.horizontal_wrapped(|ui| match &self.placing {
+            Some(placing) => {
+                ui.label(RichText::new(format!("placing {:.0} %", 100.0 * placing.job.progress())).small());
+                if ui.small_button("Cancel placing").clicked() {
+                    self.placing = None;
+                }
+            }
+            None => {
+                let hover = "For the selected objects, for the subject where none is: finds places and replaces the probes that serve \
+                             the same.";
+                if ui.button("Place automatically").on_hover_text(hover).clicked() {
+                    self.start(context.session, ui.ctx());
+                }
+            }
+        });
+        if !self.told.is_empty() {
+            ui.label(RichText::new(&self.told).small().weak());
+        }
+    }
+
+    /// True while another thread looks for places.
+    pub fn is_busy(&self) -> bool {
+        self.placing.is_some()
+    }
+
+    fn start(&mut self, session: &Session, ctx: &egui::Context) {
+        let (scene, keys) = (session.scene().clone(), &session.resolved().object_keys);
+        let serves = session.selection.objects.clone();
+        let of_keys = || serves.iter().filter_map(|key| keys.iter().position(|known| known == key)).collect();
+        let served = if serves.is_empty() { scene.served() } else { of_keys() };
+        let (effort, bound, ctx) = (impostor::effort(&session.document().lighting.settings()), self.bound, ctx.clone());
+        self.told.clear();
+        let work = move |job: &Handle| impostor::place(&scene, &served, bound as f32, &effort, job);
+        let job = Job::spawn("Placing probes".into(), move || ctx.request_repaint(), work);
+        self.placing = Some(Placing { serves, job });
+    }
+
+    fn poll(&mut self, context: &mut Context<'_>) {
+        let Some(placing) = &mut self.placing else { return };
+        let found = match placing.job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(found) => found,
+            Outcome::Failed => Err(MethodError::Unfit("it failed for an unknown reason".into())),
+        };
+        let Some(Placing { serves, .. }) = self.placing.take() else { return };
+        match found {
+            Ok(Placement { places, p95 }) => {
+                self.told = format!("{} placed: 95 % of the rays are right to {p95:.2} deg", places.len());
+                let mut first = String::new();
+                context.session.edit("Place probes", "", |document| {
+                    first = document.place_probes(&serves, &places);
+                });
+                context.aids.probes.chosen = first;
+                context.aids.probes.places = true;
+            }
+            Err(error) => self.told = error.to_string(),
+        }
+    }
+}
+
+fn list_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
     let probes = context.session.document().probes.clone();
     buttons_ui(ui, context, &probes);
     if probes.is_empty() {

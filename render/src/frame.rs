@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::lighting::impostor::Show;
 use burnish_core::math::sampling;
 use burnish_core::reference::Contribution;
 use burnish_core::scene::{Camera, Projection};
@@ -14,6 +15,7 @@ use crate::layout::types::{
 };
 use crate::pass::classical::Variant;
 use crate::pass::gbuffer::GBuffer;
+use crate::pass::impostor::Drawn;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
 use crate::probes::ProbeLook;
@@ -61,8 +63,10 @@ pub(crate) struct Encoding {
     scene_group: wgpu::BindGroup,
     viewer: Vec4,
     samples: u32,
-    /// The settings of probes, where they add to the picture.
-    look: Option<wgpu::BindGroup>,
+    /// Group 3 of each probe, where they add to the picture.
+    looks: Vec<wgpu::BindGroup>,
+    /// Errors of searches are shown.
+    errors: bool,
     /// Lamps throw shadows on a ground that is seen.
     catches: bool,
 }
@@ -84,8 +88,13 @@ impl Encoding {
         let catches = is_seen && resident.background.catches && resident.shadows.light_count > 0;
         // Their light comes from all sources, and is shown with those.
         let probed = !resident.probe_groups.is_empty() && settings.contribution == Contribution::All;
-        let look = probed.then(|| passes.impostor.effort(gpu, look));
-        Encoding { scene_group, viewer: data.viewer, samples: data.samples, look, catches }
+        let errors = look.show == Show::Error;
+        let trees = if probed && errors { resident.trees(passes) } else { &[] };
+        let group = |probe: usize| passes.impostor.effort(gpu, look, trees.get(probe));
+        let looks = if probed { (0..resident.probe_groups.len()).map(group).collect() } else { Vec::new() };
+        // Where a tree does not fit the device nothing is shown of errors.
+        let errors = errors && trees.len() == resident.probe_groups.len();
+        Encoding { scene_group, viewer: data.viewer, samples: data.samples, looks, errors, catches }
     }
 
     /// What the surfaces are.
@@ -114,12 +123,12 @@ impl Encoding {
             let groups = with(&targets.catcher_group);
             passes.catcher.encode(encoder, &targets.gbuffer, groups, areas, rows.clone());
         }
-        let variant = Variant { sampled: self.samples > 0, areas, probed: self.look.is_some() };
+        let variant = Variant { sampled: self.samples > 0, areas, probed: !self.looks.is_empty() };
         passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows.clone());
-        let Some(look) = &self.look else { return };
-        for probe in &resident.probe_groups {
+        let drawn = if self.errors { Drawn::Errors } else { Drawn::Light { sampled: variant.sampled } };
+        for (probe, look) in resident.probe_groups.iter().zip(&self.looks) {
             let groups = [&self.scene_group, &targets.gbuffer_group, probe, look];
-            passes.impostor.encode(encoder, &targets.frame, groups, variant.sampled, rows.clone());
+            passes.impostor.encode(encoder, &targets.frame, groups, drawn, rows.clone());
         }
     }
 

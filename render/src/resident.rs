@@ -3,12 +3,13 @@
 //! A [`Resident`] never changes. A changed scene becomes a new one that shares with the old whatever is still right, so
 //! that a failure on the way leaves the old one whole.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::probe::Probes;
+use burnish_core::lighting::probe::{self, Probes};
 use burnish_core::scene::{Bounds, Environment, Scene};
 use burnish_core::surface::ggx::Masking;
+use burnish_core::trace::Accel;
 use glam::Vec3;
 
 use crate::error::RenderError;
@@ -16,9 +17,10 @@ use crate::pass::classical::light_group;
 use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
 use crate::passes::Passes;
-use crate::probes::{self, GpuProbes, Lighting};
+use crate::probes::{GpuProbes, Lighting, places};
 use crate::scene::{GpuScene, MaterialGroups};
 use crate::tables::{TableCache, Tables};
+use crate::trace::TraceTree;
 
 /// Bytes of cubes that are kept beside those in use.
 const SPARE_ENVIRONMENT_BYTES: u64 = 512 << 20;
@@ -59,6 +61,8 @@ pub(crate) struct Resident {
     /// Bind group 2 of each probe.
     pub probe_groups: Vec<wgpu::BindGroup>,
     probes: Option<Arc<GpuProbes>>,
+    /// Of the surroundings of each probe, made when first asked for.
+    trees: OnceLock<Vec<TraceTree>>,
     bounds: Bounds,
     tables: Arc<TableBuffer>,
 }
@@ -119,7 +123,7 @@ impl Loader {
         };
         let places = match &probes {
             Some(probes) => probes.places.clone(),
-            None => probes::places(gpu, Probes::of(&Prepared::nothing())),
+            None => places(gpu, Probes::of(&Prepared::nothing())),
         };
         let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, (&tables.buffer, &places));
         let each = probes.iter().flat_map(|probes| &probes.each);
@@ -140,6 +144,7 @@ impl Loader {
             lighting: lighting.clone(),
             probe_groups,
             probes,
+            trees: OnceLock::new(),
             bounds,
             tables,
         })
@@ -152,6 +157,18 @@ impl Loader {
 }
 
 impl Resident {
+    /// The triangles around each probe, without what it serves; none where they do not fit the device.
+    pub fn trees(&self, passes: &Passes) -> &[TraceTree] {
+        self.trees.get_or_init(|| {
+            let Some(prepared) = self.lighting.prepared() else { return Vec::new() };
+            let tree = |maps: &Prepared| {
+                let around = probe::surroundings(&self.scene, maps.whole("served"));
+                TraceTree::new(&passes.gpu, &Accel::new(&around))
+            };
+            prepared.parts().iter().map(tree).collect::<Result<_, _>>().unwrap_or_default()
+        })
+    }
+
     /// It is of this very scene, lit like this.
     pub fn is_of(&self, scene: &Arc<Scene>, masking: Masking, lighting: &Lighting) -> bool {
         Arc::ptr_eq(&self.scene, scene) && self.masking == masking && self.lighting.is_like(lighting)

@@ -25,6 +25,7 @@ const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
 const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 const RAYS: &str = include_str!("pass/classical/rays.wgsl");
+const IMPOSTOR_LOOK: &str = include_str!("pass/impostor/look.wgsl");
 const BACKGROUND: &str = include_str!("pass/environment/background.wgsl");
 
 /// Fills the G-buffer.
@@ -78,7 +79,27 @@ pub static IMPOSTOR: Shader = Shader {
         SURFACE,
         GBUFFER_BINDINGS,
         RAYS,
+        IMPOSTOR_LOOK,
         include_str!("pass/impostor/impostor.wgsl"),
+    ],
+};
+
+/// Shows how far searches are off.
+pub static IMPOSTOR_ERROR: Shader = Shader {
+    name: "impostor error",
+    leaves: &[&classical::WGSL, &probe::WGSL, &impostor::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        IMPOSTOR_LOOK,
+        "@group(3) @binding(1) var<storage, read> trace_words: array<vec4u>;",
+        include_str!("trace/numbers.wgsl"),
+        include_str!("trace/trace.wgsl"),
+        include_str!("pass/impostor/error.wgsl"),
     ],
 };
 

@@ -20,6 +20,7 @@ pub const STACK: usize = 128;
 /// The trees of a scene on the device: one storage buffer, as the group that shaders with `trace.wgsl` bind.
 pub struct TraceTree {
     group: wgpu::BindGroup,
+    buffer: wgpu::Buffer,
     bytes: u64,
 }
 
@@ -46,12 +47,17 @@ impl TraceTree {
             layout: &TraceTree::layout(&gpu.device),
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
         });
-        Ok(TraceTree { group, bytes })
+        Ok(TraceTree { group, buffer, bytes })
     }
 
     /// For pipelines with [`TraceTree::layout`].
     pub fn group(&self) -> &wgpu::BindGroup {
         &self.group
+    }
+
+    /// The buffer, for groups that bind it beside others.
+    pub fn buffer(&self) -> &wgpu::Buffer {
+        &self.buffer
     }
 
     /// Memory on the device.

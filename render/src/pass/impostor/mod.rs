@@ -9,6 +9,19 @@ use crate::pass::environment::{cube_sampler, cube_view};
 use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
 use crate::probes::{GpuProbe, ProbeLook};
 use crate::shader;
+use crate::trace::TraceTree;
+
+/// What a pass draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// The light, or what else needs no trees.
+    Light {
+        /// Lobes are sampled; else they are looked up once.
+        sampled: bool,
+    },
+    /// Errors of searches; group 3 has the trees.
+    Errors,
+}
 
 /// The pipelines, one that looks lobes up once and one that samples them.
 pub struct ImpostorPass {
@@ -16,10 +29,12 @@ pub struct ImpostorPass {
     format: wgpu::TextureFormat,
     probe_layout: wgpu::BindGroupLayout,
     effort_layout: wgpu::BindGroupLayout,
+    error_layout: wgpu::BindGroupLayout,
     scene_layout: wgpu::BindGroupLayout,
     gbuffer_layout: wgpu::BindGroupLayout,
     module: OnceLock<wgpu::ShaderModule>,
     pipelines: [OnceLock<wgpu::RenderPipeline>; 2],
+    error: OnceLock<wgpu::RenderPipeline>,
 }
 
 impl ImpostorPass {
@@ -32,19 +47,27 @@ impl ImpostorPass {
     ) -> ImpostorPass {
         let device = &gpu.device;
         let uniform = wgpu::BufferBindingType::Uniform;
+        let storage = wgpu::BufferBindingType::Storage { read_only: true };
+        let fragment = wgpu::ShaderStages::FRAGMENT;
+        let error_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("effort and trees"),
+            entries: &[buffer_entry(0, fragment, uniform), buffer_entry(1, fragment, storage)],
+        });
         let effort_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("effort"),
-            entries: &[buffer_entry(0, wgpu::ShaderStages::FRAGMENT, uniform)],
+            entries: &[buffer_entry(0, fragment, uniform)],
         });
         ImpostorPass {
             device: device.clone(),
             format,
             probe_layout: probe_layout(device),
             effort_layout,
+            error_layout,
             scene_layout: scene_layout.clone(),
             gbuffer_layout: gbuffer_layout.clone(),
             module: OnceLock::new(),
             pipelines: Default::default(),
+            error: OnceLock::new(),
         }
     }
 
@@ -52,21 +75,38 @@ impl ImpostorPass {
     pub fn pipeline(&self, sampled: bool) -> &wgpu::RenderPipeline {
         self.pipelines[usize::from(sampled)].get_or_init(|| {
             let module = self.module.get_or_init(|| shader::IMPOSTOR.module(&self.device));
-            let layouts = [&self.scene_layout, &self.gbuffer_layout, &self.probe_layout, &self.effort_layout].map(Some);
             let mut constants = frame_constants(self.format);
             constants.push(("sampled", f64::from(u8::from(sampled))));
-            let sum = wgpu::BlendComponent {
-                src_factor: wgpu::BlendFactor::One,
-                dst_factor: wgpu::BlendFactor::One,
-                operation: wgpu::BlendOperation::Add,
-            };
-            let target = wgpu::ColorTargetState {
-                format: self.format,
-                blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-                write_mask: wgpu::ColorWrites::ALL,
-            };
-            fullscreen_pipeline(&self.device, "impostor", &layouts, module, target, &constants)
+            self.compiled(module, &self.effort_layout, &constants)
         })
+    }
+
+    /// The pipeline that shows errors.
+    fn error_pipeline(&self) -> &wgpu::RenderPipeline {
+        self.error.get_or_init(|| {
+            let module = shader::IMPOSTOR_ERROR.module(&self.device);
+            self.compiled(&module, &self.error_layout, &[])
+        })
+    }
+
+    fn compiled(
+        &self,
+        module: &wgpu::ShaderModule,
+        last: &wgpu::BindGroupLayout,
+        constants: &[(&str, f64)],
+    ) -> wgpu::RenderPipeline {
+        let layouts = [&self.scene_layout, &self.gbuffer_layout, &self.probe_layout, last].map(Some);
+        let sum = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let target = wgpu::ColorTargetState {
+            format: self.format,
+            blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
+            write_mask: wgpu::ColorWrites::ALL,
+        };
+        fullscreen_pipeline(&self.device, "impostor", &layouts, module, target, constants)
     }
 
     /// A probe as group 2.
@@ -98,8 +138,8 @@ impl ImpostorPass {
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("probe"), layout, entries: &entries })
     }
 
-    /// The settings as group 3.
-    pub(crate) fn effort(&self, gpu: &Gpu, look: &ProbeLook) -> wgpu::BindGroup {
+    /// The settings as group 3, with the trees that errors are told by.
+    pub(crate) fn effort(&self, gpu: &Gpu, look: &ProbeLook, trees: Option<&TraceTree>) -> wgpu::BindGroup {
         let data = EffortData {
             solver: look.effort.solver as u32,
             refinements: look.effort.refinements,
@@ -111,10 +151,15 @@ impl ImpostorPass {
             pad2: 0,
         };
         let buffer = gpu.buffer("effort", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
+        let buffers = [Some(&buffer), trees.map(TraceTree::buffer)].into_iter().flatten();
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("effort"),
-            layout: &self.effort_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+            layout: if trees.is_some() { &self.error_layout } else { &self.effort_layout },
+            entries: &entries,
         })
     }
 
@@ -124,7 +169,7 @@ impl ImpostorPass {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         groups: [&wgpu::BindGroup; 4],
-        sampled: bool,
+        drawn: Drawn,
         rows: std::ops::Range<u32>,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -132,7 +177,10 @@ impl ImpostorPass {
             color_attachments: &[attachment(target, wgpu::LoadOp::Load)],
             ..Default::default()
         });
-        pass.set_pipeline(self.pipeline(sampled));
+        pass.set_pipeline(match drawn {
+            Drawn::Light { sampled } => self.pipeline(sampled),
+            Drawn::Errors => self.error_pipeline(),
+        });
         pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
         for (index, group) in groups.into_iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);

@@ -131,10 +131,6 @@ impl ProbesSection {
         }
     }
 
-    /// True while another thread looks for places.
-    pub fn is_busy(&self) -> bool {
-        self.placing.is_some()
-    }
 
     fn start(&mut self, session: &Session, ctx: &egui::Context) {
         let (scene, keys) = (session.scene().clone(), &session.resolved().object_keys);
@@ -144,7 +140,7 @@ impl ProbesSection {
         let (effort, bound, ctx) = (impostor::effort(&session.document().lighting.settings()), self.bound, ctx.clone());
         self.told.clear();
         let work = move |job: &Handle| impostor::place(&scene, &served, bound as f32, &effort, job);
-        let job = Job::spawn("Placing probes".into(), move || ctx.request_repaint(), work);
+        let job = Job::spawn("Placing probes", move || ctx.request_repaint(), work);
         self.placing = Some(Placing { serves, job });
     }
 

@@ -131,7 +131,6 @@ impl ProbesSection {
         }
     }
 
-
     fn start(&mut self, session: &Session, ctx: &egui::Context) {
         let (scene, keys) = (session.scene().clone(), &session.resolved().object_keys);
         let serves = session.selection.objects.clone();

@@ -61,6 +61,8 @@ pub(crate) struct Resident {
     /// Bind group 2 of each probe.
     pub probe_groups: Vec<wgpu::BindGroup>,
     probes: Option<Arc<GpuProbes>>,
+    /// Box around what each probe serves.
+    pub served: Vec<Bounds>,
     /// Of the surroundings of each probe, made when first asked for.
     trees: OnceLock<Vec<TraceTree>>,
     bounds: Bounds,
@@ -126,6 +128,12 @@ impl Loader {
             None => places(gpu, Probes::of(&Prepared::nothing())),
         };
         let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, (&tables.buffer, &places));
+        let served = match before {
+            Some(before) if before.lighting.is_like(lighting) && same_places(&before.scene, scene) => {
+                before.served.clone()
+            }
+            _ => lighting.prepared().map_or_else(Vec::new, |prepared| served(scene, prepared)),
+        };
         let each = probes.iter().flat_map(|probes| &probes.each);
         let group = |probe| passes.impostor.group(gpu, probe, &places, &tables.buffer);
         let probe_groups = each.map(group).collect();
@@ -144,6 +152,7 @@ impl Loader {
             lighting: lighting.clone(),
             probe_groups,
             probes,
+            served,
             trees: OnceLock::new(),
             bounds,
             tables,
@@ -173,6 +182,15 @@ impl Resident {
     pub fn is_of(&self, scene: &Arc<Scene>, masking: Masking, lighting: &Lighting) -> bool {
         Arc::ptr_eq(&self.scene, scene) && self.masking == masking && self.lighting.is_like(lighting)
     }
+}
+
+/// Boxes around what probes serve.
+fn served(scene: &Scene, prepared: &Prepared) -> Vec<Bounds> {
+    let of = |maps: &Prepared| {
+        let served: Vec<usize> = maps.whole("served").iter().map(|i| *i as usize).collect();
+        scene.bounds_of(&served)
+    };
+    prepared.parts().iter().map(of).collect()
 }
 
 /// True when every instance is where it was: the bounds stay.

@@ -109,14 +109,14 @@ fn served(position: vec4f) -> Served {
     if first.x == 0u {
         return found;
     }
+    let serving = instances[first.x - 1u].probes;
+    if (serving & (1u << probe.index)) == 0u {
+        return found;
+    }
     let packed = Packed(
         first, textureLoad(words1, pixel, 0), textureLoad(words2, pixel, 0), textureLoad(words3, pixel, 0),
     );
     found.texel = texel_unpack(packed);
-    let serving = instances[found.texel.id - 1u].probes;
-    if (serving & (1u << probe.index)) == 0u {
-        return found;
-    }
     let world = unproject(position.xy, textureLoad(depth, pixel, 0));
     found.point = world.xyz / world.w;
     found.weight = probe_weight(probe.index, serving, found.point);

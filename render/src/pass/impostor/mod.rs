@@ -163,14 +163,14 @@ impl ImpostorPass {
         })
     }
 
-    /// Adds to some rows of a target.
+    /// Adds to a part of a target: left top corner and size in pixels.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         groups: [&wgpu::BindGroup; 4],
         drawn: Drawn,
-        rows: std::ops::Range<u32>,
+        [left, top, width, height]: [u32; 4],
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("impostor"),
@@ -181,7 +181,7 @@ impl ImpostorPass {
             Drawn::Light { sampled } => self.pipeline(sampled),
             Drawn::Errors => self.error_pipeline(),
         });
-        pass.set_scissor_rect(0, rows.start, target.texture().width(), rows.end - rows.start);
+        pass.set_scissor_rect(left, top, width, height);
         for (index, group) in groups.into_iter().enumerate() {
             pass.set_bind_group(index as u32, group, &[]);
         }

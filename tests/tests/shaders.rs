@@ -5,7 +5,7 @@ use std::f32::consts;
 
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, classical, impostor, probe};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
 use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
@@ -260,6 +260,21 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("AREA_RECTANGLE", area::RECTANGLE.into()),
             ("AREA_CAP", area::CAP.into()),
             ("AREA_EVERYWHERE", area::EVERYWHERE.into()),
+        ],
+        "area_cube" => vec![
+            ("AREA_CUBE_HEIGHTS", area_cube::tables::HEIGHTS.into()),
+            ("AREA_CUBE_SHARES", area_cube::tables::SHARES.into()),
+            ("AREA_CUBE_WIDTHS", area_cube::tables::WIDTHS.into()),
+            ("AREA_CUBE_CAPS", area_cube::tables::CAPS.into()),
+            ("AREA_CUBE_OFFSETS", area_cube::tables::OFFSETS.into()),
+            ("AREA_CUBE_NORMALS", area_cube::tables::NORMALS.into()),
+            ("AREA_CUBE_STRIDE", area_cube::tables::STRIDE.into()),
+            ("AREA_CUBE_CHORD_MAX", area_cube::tables::CHORD_MAX.into()),
+            ("AREA_CUBE_NEIGHBOURS", area_cube::NEIGHBOURS.into()),
+            ("AREA_CUBE_NEAR", area_cube::NEAR.into()),
+            ("AREA_CUBE_WIDEST", area_cube::WIDEST.into()),
+            ("AREA_CUBE_LEAST", area_cube::LEAST.into()),
+            ("AREA_CUBE_HORIZON", area_cube::HORIZON.into()),
         ],
         "classical" => vec![("CLASSICAL_OVERLAP", classical::OVERLAP.into())],
         _ => Vec::new(),

@@ -1,6 +1,7 @@
 //! Lighting methods, one folder each.
 
 pub mod area;
+pub mod area_cube;
 pub mod classical;
 pub mod cube_map;
 pub mod drawing;
@@ -21,7 +22,8 @@ pub use method::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Met
 pub use prepared::{Prepared, Reads, Store};
 
 /// The methods that come with the program, in the order in which they are listed.
-pub static METHODS: Methods<'static> = &[&classical::Classical, &impostor::Impostor, &reference::Reference];
+pub static METHODS: Methods<'static> =
+    &[&classical::Classical, &impostor::Impostor, &area_cube::AreaCube, &reference::Reference];
 
 /// Methods that were added by [`register`].
 static ADDED: RwLock<Vec<&'static dyn Method>> = RwLock::new(Vec::new());
@@ -48,4 +50,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] = &[&area::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &area_cube::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL];

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use burnish_core::lighting::area;
+use burnish_core::lighting::area_cube::tables;
 use burnish_core::lighting::classical::mean_fresnel_table;
 use burnish_core::surface::fresnel::{Fresnel, TABLE_SIZE};
 use burnish_core::surface::ggx::Masking;
@@ -34,9 +35,12 @@ pub struct Curves {
 /// Place of the cosines of area lights in the buffer.
 pub const AREA: u32 = 2 * ALBEDO_STRIDE;
 
+/// Place of the tables of area cubes in the buffer.
+pub const AREA_CUBE: u32 = AREA + 2 * area::STRIDE;
+
 /// Place of the first curve's fields in the buffer.
 pub fn first() -> u32 {
-    AREA + 2 * area::STRIDE
+    AREA_CUBE + tables::NORMALS + 2 * tables::STRIDE
 }
 
 static CURVES: LazyLock<Curves> = LazyLock::new(|| {
@@ -77,9 +81,9 @@ impl Curves {
     }
 }
 
-/// The albedo tables, the cosines of area lights, the fields of all curves, then their tables.
+/// The albedo tables, the cosines of area lights, the tables of area cubes, the fields of all curves, then their tables.
 fn floats(curves: &[Curve]) -> Vec<f32> {
-    let mut floats = [AlbedoTable::get().flat(), area::table()].concat();
+    let mut floats = [AlbedoTable::get().flat(), area::table(), tables::flat()].concat();
     assert_eq!(floats.len(), first() as usize);
     floats.resize(floats.len() + FIELDS * curves.len(), 0.0);
     for (i, curve) in curves.iter().enumerate() {

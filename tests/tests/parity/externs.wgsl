@@ -2,7 +2,7 @@
 
 @group(0) @binding(0) var<storage, read> parity_inputs: array<vec4f>;
 @group(0) @binding(1) var<storage, read_write> parity_outputs: array<vec4f>;
-// The albedo tables, the cosines of area lights, the curves' fields, the curves' tables.
+// The albedo tables, the cosines of area lights, the tables of area cubes, the curves' fields, the curves' tables.
 @group(0) @binding(2) var<storage, read> parity_table: array<f32>;
 
 fn parity_vec3(at: u32) -> vec3f {
@@ -15,6 +15,10 @@ fn ggx_albedo_entry(index: u32) -> f32 {
 
 fn area_entry(index: u32) -> f32 {
     return parity_table[PARITY_AREA + index];
+}
+
+fn area_cube_entry(index: u32) -> f32 {
+    return parity_table[PARITY_AREA_CUBE + index];
 }
 
 fn fresnel_table(table: u32, entry: u32) -> vec3f {
@@ -52,4 +56,15 @@ fn classical_source(index: u32) -> mat2x3f {
 fn impostor_distance(direction: vec3f) -> f32 {
     let a = abs(direction);
     return (1.0 + 0.1 * direction.x * direction.y) / max(a.x, max(a.y, a.z));
+}
+
+fn area_cube_texel(index: u32) -> mat3x4f {
+    let i = f32(index);
+    let place = vec3f(sin(1.3 * i), cos(2.1 * i), sin(0.7 * i + 1.0)) + vec3f(0.05);
+    let radiance = vec4f(1.2 + sin(0.9 * i), 0.8, 1.5 + cos(0.4 * i), 0.0);
+    if index % 7u == 0u {
+        return mat3x4f(vec4f(normalize(place), 0.0), vec4f(vec3f(0.0), 0.97), radiance);
+    }
+    let spread = 0.05 + 0.04 * sin(0.3 * i);
+    return mat3x4f(vec4f(place, spread), vec4f(-1.2 * normalize(place), 0.95), radiance);
 }

@@ -97,8 +97,10 @@ impl Case {
     pub fn source(&self) -> String {
         let (leaves, (i, o)) = (leaf::join(&[self.leaf]), self.strides);
         let (helpers, body, curves, area) = (self.helpers, self.body, curves::first(), curves::AREA);
+        let area_cube = curves::AREA_CUBE;
         format!(
-            "{leaves}\nconst PARITY_CURVES: u32 = {curves}u;\nconst PARITY_AREA: u32 = {area}u;\n{EXTERNS}\n{helpers}\n\
+            "{leaves}\nconst PARITY_CURVES: u32 = {curves}u;\nconst PARITY_AREA: u32 = {area}u;\n\
+             const PARITY_AREA_CUBE: u32 = {area_cube}u;\n{EXTERNS}\n{helpers}\n\
              @compute @workgroup_size(64)\n\
              fn parity(@builtin(global_invocation_id) id: vec3u) {{\n\
              if id.x >= arrayLength(&parity_inputs) / {i}u {{ return; }}\n\

@@ -4,6 +4,7 @@
 //! reaches. `trace` compares rays, which are no leaf.
 
 mod area;
+mod area_cube;
 mod blinn_phong;
 mod classical;
 mod coat;
@@ -59,6 +60,7 @@ fn cases() -> Vec<Case> {
     cases.extend(layered::cases());
     cases.extend(micro_normal::cases());
     cases.extend(area::cases());
+    cases.extend(area_cube::cases());
     cases.extend(classical::cases());
     cases.extend(impostor::cases());
     cases.extend(probe::cases());

@@ -217,7 +217,11 @@ pub fn options_of_the_other_method_are_refused() {
     refused(&reference, &["--time", "NaN"], &["--time", "0 to"]);
     refused(&reference, &["--threads", "0"], &["--threads"]);
     refused(&reference, &["--seed", "4294967296"], &["--seed"]);
-    refused(&["render", "--method", "magic", "--out", "x.exr"], &[], &["magic", "classical, impostor, reference"]);
+    refused(
+        &["render", "--method", "magic", "--out", "x.exr"],
+        &[],
+        &["magic", "classical, impostor, area-cube, reference"],
+    );
     let help = burnish(&["render", "--help"]).succeeded().out;
     for words in ["--checkpoint", "--error", "With --method reference", "bounces: a whole number", "default: 64"] {
         assert!(help.contains(words), "{words} is missing in: {help}");

@@ -180,7 +180,7 @@ pub fn environment(
 }
 
 /// A shading normal may look away from the viewer: brings the direction back above the horizon.
-pub(super) fn facing(wo: Vec3) -> Vec3 {
+pub(in crate::lighting) fn facing(wo: Vec3) -> Vec3 {
     Vec3::new(wo.x, wo.y, wo.z.max(1e-3)).normalize()
 }
 
@@ -205,7 +205,7 @@ fn split_sum(maps: &impl Maps, s: &Surface, mean: MeanFresnel<'_>, base: &Frame,
 }
 
 /// Isotropic width that stands for both where the direction of the grooves matters little.
-fn width(alpha: Vec2) -> f32 {
+pub(in crate::lighting) fn width(alpha: Vec2) -> f32 {
     (0.5 * alpha.length_squared()).sqrt()
 }
 
@@ -296,14 +296,14 @@ fn bent_normal(base: &Frame, wo_world: Vec3, alpha: Vec2) -> Vec3 {
 }
 
 /// Albedo of light that bounced more than once between microfacets.
-fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
+pub(in crate::lighting) fn multiple_albedo(s: &Surface, wo: Vec3) -> Vec3 {
     ggx::bounces(s.fresnel_mean, loss_mean(s.alpha, s.masking)) * loss(wo, s.alpha, s.masking)
 }
 
 /// Share of a reflection that an ambient occlusion leaves: a mirror loses little, a matte surface all of it.
 ///
 /// Lagarde and de Rousiers 2014, Moving Frostbite to Physically Based Rendering, section 4.10.2.
-fn reflection_occlusion(mu: f32, alpha: f32, occlusion: f32) -> f32 {
+pub(in crate::lighting) fn reflection_occlusion(mu: f32, alpha: f32, occlusion: f32) -> f32 {
     ((mu + occlusion).powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + occlusion).clamp(0.0, 1.0)
 }
 

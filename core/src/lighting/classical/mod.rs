@@ -29,6 +29,7 @@ use crate::surface::layered;
 
 pub use cubes::{CubeSizes, IRRADIANCE_FACE, PreparedMaps, cube_scale, prepare as prepare_map};
 pub use evaluate::{Lobes, Maps, MeanFresnel, OVERLAP, environment, footprint, prefilter};
+pub(in crate::lighting) use evaluate::{facing, multiple_albedo, reflection_occlusion, width};
 pub use sources::{PREFILTER_SOURCES, SHADING_SOURCES, Source, Split, split};
 
 /// Id of the method, as documents name it.

@@ -69,7 +69,8 @@ const SHOW: ParamSpec = ParamSpec {
     affects: Affects::Frame,
 };
 
-const RESOLUTION: ParamSpec = ParamSpec {
+/// Texels of a probe; shared by methods that have probes.
+pub const RESOLUTION: ParamSpec = ParamSpec {
     key: "resolution",
     label: "Resolution",
     unit: "texels",
@@ -78,7 +79,8 @@ const RESOLUTION: ParamSpec = ParamSpec {
     affects: Affects::Prepare,
 };
 
-const PATHS: ParamSpec = ParamSpec {
+/// Paths of a probe; shared likewise.
+pub const PATHS: ParamSpec = ParamSpec {
     key: "probe-paths",
     label: "Probe paths",
     unit: "per texel",

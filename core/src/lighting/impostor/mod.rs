@@ -19,7 +19,7 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use method::{ID, Impostor, PARAMS, effort, show, sites};
+pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, show, sites};
 pub use placement::{Placement, place};
 pub use show::{
     MOST_LOOKUPS, MOST_RATIO, SHOW_ERROR, SHOW_LIGHT, SHOW_LOOKUPS, SHOW_RATIO, Show, error_shown, heat, shown,

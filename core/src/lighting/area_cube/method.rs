@@ -1,0 +1,191 @@
+//! The method: the texels of a probe, coarse, as lights of the objects that it serves.
+
+use std::borrow::Cow;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::{Asked, EDGES, Looked, NUMBERS, Texel, Texels, downsample, reflected};
+use crate::job::Handle;
+use crate::lighting::classical::{self, Maps, PreparedMaps};
+use crate::lighting::impostor::{self, Effort, Solver};
+use crate::lighting::probe::{self, Probe, Probes};
+use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
+use crate::math::frame::Frame;
+use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::reference::{SurfacePoint, World};
+use crate::scene::Scene;
+
+/// Id of the method, as documents name it.
+pub const ID: &str = "area-cube";
+
+/// The method as others see it.
+#[derive(Debug)]
+pub struct AreaCube;
+
+const TEXELS: ParamSpec = ParamSpec {
+    key: "texels",
+    label: "Texels",
+    unit: "along an edge",
+    kind: ParamKind::Choice { options: &["2", "4", "8", "16"], default: 1 },
+    help: "Of a face of the coarse cube: each of its texels is a light.",
+    affects: Affects::Frame,
+};
+
+const SUM: ParamSpec = ParamSpec {
+    key: "sum",
+    label: "Sum",
+    unit: "",
+    kind: ParamKind::Choice { options: &["all", "few"], default: 0 },
+    help: "What a glossy lobe looks at: all texels, or the one that its reflection meets and the four beside it. Matte light \
+           is always that of all.",
+    affects: Affects::Frame,
+};
+
+const CORRECTION: ParamSpec = ParamSpec {
+    key: "correction",
+    label: "Correction",
+    unit: "",
+    kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
+    help: "Minds under which angle a surface is seen from the point and from the probe; without it walls are too bright.",
+    affects: Affects::Frame,
+};
+
+const NORMALIZATION: ParamSpec = ParamSpec {
+    key: "normalization",
+    label: "Normalisation",
+    unit: "",
+    kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
+    help: "Makes even light come out as bright as the surface reflects it, wherever the point is.",
+    affects: Affects::Frame,
+};
+
+/// Settings of this method: resolution and paths of its probes are those of `impostor`, the last those of `classical`.
+pub const PARAMS: &[ParamSpec] = &[
+    TEXELS,
+    SUM,
+    CORRECTION,
+    NORMALIZATION,
+    impostor::RESOLUTION,
+    impostor::PATHS,
+    classical::PARAMS[1],
+    classical::PARAMS[2],
+    classical::PARAMS[3],
+    classical::PARAMS[4],
+    classical::PARAMS[5],
+];
+
+static INFO: MethodInfo = MethodInfo {
+    id: MethodId(ID),
+    title: "Localised area cube",
+    summary: "Glossy and diffuse light of near surroundings: the texels of a coarse probe as lights with an area.",
+    params: PARAMS,
+    coverage: Coverage {
+        lamps: Cover::None,
+        environment: Cover::Approximate,
+        indirect_diffuse: Cover::Approximate,
+        indirect_glossy: Cover::Approximate,
+        emission: Cover::None,
+    },
+    reads: Reads { probes: true, ..Reads::ALL },
+    revision: 1,
+};
+
+/// The array of a probe that holds its coarse cubes, those of all [`EDGES`].
+const ARRAY: &str = "area-cube";
+/// Most parts along an edge into which a texel is cut to take its means.
+const PARTS_MAX: u32 = 64;
+
+impl Method for AreaCube {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+
+    fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        let recorded = probe::prepare(world, &impostor::sites(world.scene(), settings), job)?;
+        let coarse = Probes::of(&recorded).iter().map(|probe| coarse(&probe)).collect::<Vec<_>>();
+        let parts = recorded.parts().iter().cloned().zip(coarse);
+        Ok(Prepared::nothing().with_parts(parts.map(|(part, numbers)| part.with(ARRAY, numbers)).collect()))
+    }
+
+    fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
+        Cow::Owned(probe::seen::read(scene, &impostor::sites(scene, settings)))
+    }
+
+    fn points(&self) -> Option<&dyn ShadePoint> {
+        Some(self)
+    }
+}
+
+/// The coarse cubes of a probe, one after the other.
+fn coarse(probe: &Probe<'_>) -> Vec<f32> {
+    let Some(maps) = PreparedMaps::unturned(probe.maps) else { return Vec::new() };
+    let face = probe.maps.whole("face").first().copied().unwrap_or(1);
+    let cubes = EDGES.par_iter().map(|edge| {
+        let parts = face.div_ceil(*edge).clamp(2, PARTS_MAX);
+        // The level with about one texel for each part.
+        let finest = (maps.radiance_levels() - 1.0).exp2();
+        let level = (finest / (edge * parts) as f32).log2().max(0.0);
+        let texels = downsample(*edge, parts, &|d| maps.radiance(d, level), &|d| probe.distances.distance(d));
+        texels.iter().flat_map(Texel::to_array).collect::<Vec<f32>>()
+    });
+    debug_assert_eq!(Texel::default().to_array().len(), NUMBERS);
+    cubes.collect::<Vec<_>>().concat()
+}
+
+/// Texels along an edge of a face, from settings made of [`PARAMS`].
+fn edge(settings: &Settings) -> u32 {
+    match settings.get(TEXELS.key) {
+        Some(ParamValue::Choice(index)) => EDGES.get(index).copied().unwrap_or(EDGES[1]),
+        _ => EDGES[1],
+    }
+}
+
+/// What is asked of them, likewise.
+fn asked(settings: &Settings) -> Asked {
+    let is_off = |spec: &ParamSpec| settings.text(spec.key).as_deref() == Some("off");
+    Asked {
+        few: settings.text(SUM.key).as_deref() == Some("few"),
+        corrected: !is_off(&CORRECTION),
+        normalized: !is_off(&NORMALIZATION),
+    }
+}
+
+/// How the texel is found that a reflection meets: a texel is large, two steps are enough.
+const EFFORT: Effort = Effort { solver: Solver::Secant, refinements: 2, steps: 1, tolerance: 0.05 };
+
+/// In which direction the probe sees what the reflection of a lobe of width `alpha` meets.
+fn met(probe: &Probe<'_>, x: Vec3, frame: &Frame, to_viewer: Vec3, alpha: f32) -> Vec3 {
+    let n = frame.n;
+    let mirrored = 2.0 * n.dot(to_viewer) * n - to_viewer;
+    // Wide lobes lean toward the normal, where the cosine is larger: as the one lookup of `classical`.
+    let direction = mirrored.lerp(n, alpha * alpha).normalize_or(n);
+    let distances = |d: Vec3| probe.distances.distance(d);
+    impostor::solve(&distances, &probe.extent, x, direction, &EFFORT).direction(x, direction)
+}
+
+impl ShadePoint for AreaCube {
+    fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
+        let (edge, asked) = (edge(settings), asked(settings));
+        let surface = point.surface();
+        let (base, coat, to_viewer) = (point.base(), point.coat(), point.to_viewer());
+        let (mut sum, mut left) = (Vec3::ZERO, 1.0);
+        for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
+            let Some(texels) = Texels::of(probe.maps.floats(ARRAY), edge) else { continue };
+            let x = point.position() - probe.middle;
+            let mut at = Looked { x, base: base.n, coat: coat.n };
+            if asked.few {
+                at.base = met(&probe, x, base, to_viewer, (surface.alpha.x * surface.alpha.y).sqrt());
+                at.coat = met(&probe, x, coat, to_viewer, surface.coat_alpha);
+            }
+            sum += weight * reflected(&texels, &surface, base, coat, to_viewer, point.occlusion(), &at, asked);
+            left -= weight;
+        }
+        // What no probe knows.
+        if left > 1e-4 { sum + left * point.environment([random, random]) } else { sum }
+    }
+}
+
+#[cfg(test)]
+#[path = "method_tests.rs"]
+mod tests;

@@ -89,7 +89,7 @@ impl Encoding {
         let catches = is_seen && resident.background.catches && resident.shadows.light_count > 0;
         // Their light comes from all sources, and is shown with those.
         let probed = !resident.probe_groups.is_empty() && settings.contribution == Contribution::All;
-        let errors = look.show == Show::Error;
+        let errors = look.show == Show::Error && !resident.lighting.is_area_cube();
         let trees = if probed && errors { resident.trees(passes) } else { &[] };
         let group = |probe: usize| passes.impostor.effort(gpu, look, trees.get(probe));
         let looks = if probed { (0..resident.probe_groups.len()).map(group).collect() } else { Vec::new() };
@@ -134,7 +134,11 @@ impl Encoding {
         }
         let variant = Variant { sampled: self.samples > 0, areas, probed: !self.looks.is_empty() };
         passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows.clone());
-        let drawn = if self.errors { Drawn::Errors } else { Drawn::Light { sampled: variant.sampled } };
+        let drawn = match (resident.lighting.is_area_cube(), self.errors) {
+            (true, _) => Drawn::AreaCube,
+            (false, true) => Drawn::Errors,
+            (false, false) => Drawn::Light { sampled: variant.sampled },
+        };
         for ((probe, look), served) in resident.probe_groups.iter().zip(&self.looks).zip(&resident.served) {
             let Some(part) = covered(&self.clip_from_world, targets.size, served, &rows) else { continue };
             let groups = [&self.scene_group, &targets.gbuffer_group, probe, look];

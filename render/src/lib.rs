@@ -4,7 +4,7 @@
 //! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere. Lighting formulas live in `burnish-core` as leaves; here are
 //! the passes that join and run them.
 
-use burnish_core::lighting::{classical, impostor};
+use burnish_core::lighting::{area_cube, classical, impostor};
 
 pub mod bench;
 mod clock;
@@ -38,5 +38,5 @@ pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};
 
 /// The device has a pass for this lighting method; without one a method draws on the processor, if it can.
 pub fn draws(method: burnish_core::lighting::MethodId) -> bool {
-    [classical::ID, impostor::ID].contains(&method.0)
+    [classical::ID, impostor::ID, area_cube::ID].contains(&method.0)
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::probe::{self, Probe, Probes};
-use burnish_core::lighting::{MethodId, Prepared, impostor};
+use burnish_core::lighting::{MethodId, Prepared, area_cube, impostor};
 use burnish_core::param::Settings;
 
 use crate::device::Gpu;
@@ -16,12 +16,15 @@ use crate::pass::environment::EnvironmentMaps;
 #[derive(Clone, Debug, Default)]
 pub struct Lighting {
     prepared: Option<Arc<Prepared>>,
+    is_area_cube: bool,
 }
 
 impl Lighting {
     /// A method with its preparation.
     pub fn new(method: MethodId, prepared: Option<Arc<Prepared>>) -> Lighting {
-        Lighting { prepared: prepared.filter(|prepared| method.0 == impostor::ID && !prepared.is_nothing()) }
+        let is_area_cube = method.0 == area_cube::ID;
+        let knows = is_area_cube || method.0 == impostor::ID;
+        Lighting { prepared: prepared.filter(|prepared| knows && !prepared.is_nothing()), is_area_cube }
     }
 
     /// It takes the place of the environment somewhere.
@@ -42,9 +45,14 @@ impl Lighting {
         serving.map(|index| 1 << index).sum()
     }
 
+    /// The method is `area-cube`.
+    pub(crate) fn is_area_cube(&self) -> bool {
+        self.is_area_cube
+    }
+
     pub(crate) fn is_like(&self, other: &Lighting) -> bool {
         match (&self.prepared, &other.prepared) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) && self.is_area_cube == other.is_area_cube,
             (a, b) => a.is_none() && b.is_none(),
         }
     }
@@ -55,11 +63,19 @@ impl Lighting {
 pub(crate) struct ProbeLook {
     pub effort: impostor::Effort,
     pub show: impostor::Show,
+    /// Of the method `area-cube`: texels along an edge, and what is asked of them.
+    pub edge: u32,
+    pub asked: area_cube::Asked,
 }
 
 impl ProbeLook {
     pub fn new(settings: &Settings) -> ProbeLook {
-        ProbeLook { effort: impostor::effort(settings), show: impostor::show(settings) }
+        ProbeLook {
+            effort: impostor::effort(settings),
+            show: impostor::show(settings),
+            edge: area_cube::edge(settings),
+            asked: area_cube::asked(settings),
+        }
     }
 }
 
@@ -77,6 +93,8 @@ pub(crate) struct GpuProbe {
     /// What is kept of distances, a layer for each face.
     pub inverse_depths: wgpu::TextureView,
     pub data: wgpu::Buffer,
+    /// The texels of its coarse cubes, never empty.
+    pub coarse: wgpu::Buffer,
 }
 
 impl GpuProbes {
@@ -127,10 +145,19 @@ impl GpuProbe {
         };
         Ok(GpuProbe {
             inverse_depths: depths(gpu, face, inverse),
+            coarse: coarse(gpu, probe),
             data: gpu.buffer("probe", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM),
             maps,
         })
     }
+}
+
+/// The texels as three vectors each; a black one where the method is another.
+fn coarse(gpu: &Gpu, probe: &Probe<'_>) -> wgpu::Buffer {
+    let numbers = probe.maps.floats(area_cube::ARRAY);
+    let missing = [0.0; area_cube::NUMBERS];
+    let numbers = if numbers.is_empty() { &missing[..] } else { numbers };
+    gpu.buffer("coarse cubes", bytemuck::cast_slice(numbers), wgpu::BufferUsages::STORAGE)
 }
 
 fn depths(gpu: &Gpu, face: u32, inverse: &[f32]) -> wgpu::TextureView {

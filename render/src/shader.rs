@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, classical, impostor, probe};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
 use burnish_core::measure::view;
 use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
@@ -81,6 +81,22 @@ pub static IMPOSTOR: Shader = Shader {
         RAYS,
         IMPOSTOR_LOOK,
         include_str!("pass/impostor/impostor.wgsl"),
+    ],
+};
+
+/// Adds the light of a probe's coarse cube.
+pub static AREA_CUBE: Shader = Shader {
+    name: "area_cube",
+    leaves: &[&classical::WGSL, &probe::WGSL, &impostor::WGSL, &area_cube::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        IMPOSTOR_LOOK,
+        include_str!("pass/area_cube/area_cube.wgsl"),
     ],
 };
 
@@ -163,6 +179,8 @@ pub static ALL: &[&Shader] = &[
     &ENVIRONMENT,
     &CLASSICAL,
     &IMPOSTOR,
+    &IMPOSTOR_ERROR,
+    &AREA_CUBE,
     &CATCHER,
     &FORWARD,
     &ACCUMULATE,

@@ -97,6 +97,9 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("CONTRIBUTION_EMISSION", CONTRIBUTION_EMISSION),
     ("CONTRIBUTION_LIGHT", CONTRIBUTION_LIGHT),
     ("SHADOW_NONE", SHADOW_NONE),
+    ("AREA_CUBE_FEW", AREA_CUBE_FEW),
+    ("AREA_CUBE_CORRECTED", AREA_CUBE_CORRECTED),
+    ("AREA_CUBE_NORMALIZED", AREA_CUBE_NORMALIZED),
     ("HIT_NONE", HIT_NONE),
 ];
 
@@ -140,6 +143,13 @@ pub const CONTRIBUTION_LIGHT: u32 = 3;
 pub const SHADOW_NONE: u32 = u32::MAX;
 /// Instance of a ray that meets nothing.
 pub const HIT_NONE: u32 = u32::MAX;
+
+/// Flag of [`EffortData`]: lobes look at few texels.
+pub const AREA_CUBE_FEW: u32 = 1;
+/// Flag of [`EffortData`]: minds the angles of surfaces.
+pub const AREA_CUBE_CORRECTED: u32 = 2;
+/// Flag of [`EffortData`]: even light comes out even.
+pub const AREA_CUBE_NORMALIZED: u32 = 4;
 
 shared! {
     /// What changes from frame to frame.
@@ -297,16 +307,16 @@ shared! {
 }
 
 shared! {
-    /// How rays are followed through the surroundings of a probe.
+    /// How the surroundings of a probe are looked up.
     pub struct EffortData {
         solver: u32,
         refinements: u32,
         steps: u32,
         tolerance: f32,
         show: u32,
+        edge: u32,
+        flags: u32,
         pad0: u32,
-        pad1: u32,
-        pad2: u32,
     }
 }
 

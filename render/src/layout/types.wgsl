@@ -208,16 +208,21 @@ struct ProbeData {
     pad0: u32,
 }
 
-// How rays are followed through the surroundings of a probe.
+const AREA_CUBE_FEW: u32 = 1u;
+const AREA_CUBE_CORRECTED: u32 = 2u;
+const AREA_CUBE_NORMALIZED: u32 = 4u;
+
+// How the surroundings of a probe are looked up.
 struct EffortData {
     solver: u32,
     refinements: u32,
     steps: u32,
     tolerance: f32,
     show: u32,
+    // Of the method area-cube: texels along an edge, and AREA_CUBE_ flags.
+    edge: u32,
+    flags: u32,
     pad0: u32,
-    pad1: u32,
-    pad2: u32,
 }
 
 struct LightData {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::job::Handle;
-use burnish_core::lighting::{Drawing, Layers, Method, Prepared, Store, classical, impostor};
+use burnish_core::lighting::{Drawing, Layers, Method, Prepared, Store, area_cube, classical, impostor};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
 use burnish_core::reference::{self, Control, Film, Options, Pass, World};
@@ -30,23 +30,33 @@ pub fn trials() -> Vec<Trial> {
     let searches = [("secant", "0"), ("secant", "16"), ("box", "0"), ("march", "16"), ("classical", "0")];
     let impostor = searches.into_iter().map(|(solver, samples)| {
         let name = format!("impostor is the same on device and processor: {solver}, samples {samples}");
-        trial(name.leak(), &[Need::Gpu], move || same_impostor(solver, samples))
+        trial(name.leak(), &[Need::Gpu], move || {
+            same_with_probes(&impostor::Impostor, &[("solver", solver), ("samples", samples)])
+        })
     });
-    classical.chain(impostor).collect()
+    let sums = [("all", "4", "on"), ("few", "16", "on"), ("all", "2", "off")];
+    let area_cube = sums.into_iter().map(|(sum, texels, correction)| {
+        let name =
+            format!("area-cube is the same on device and processor: {sum}, {texels} texels, correction {correction}");
+        trial(name.leak(), &[Need::Gpu], move || {
+            same_with_probes(&area_cube::AreaCube, &[("sum", sum), ("texels", texels), ("correction", correction)])
+        })
+    });
+    classical.chain(impostor).chain(area_cube).collect()
 }
 
 /// A rough body in a room, with two probes that fade into each other on it. Of what no probe serves the device has filtered
 /// cubes and the processor samples of the environment: only the body is compared.
-fn same_impostor(solver: &str, samples: &str) {
+fn same_with_probes(method: &'static dyn Method, given: &[(&str, &str)]) {
     let mut scene = gallery::open("room?roughness=0.35").expect("in the gallery");
     scene.environment = Some(Arc::new(sky()));
     let at = |x: f32| Probe { position: Some(Vec3::new(0.24 + x, -0.2, -0.22)), ..Probe::default() };
     scene.probes = vec![at(-0.1), at(0.15)];
-    let mut settings = Settings::new(impostor::PARAMS);
-    for (key, value) in [("solver", solver), ("samples", samples), ("resolution", "32"), ("probe-paths", "4")] {
+    let mut settings = Settings::new(method.info().params);
+    for (key, value) in [("resolution", "32"), ("probe-paths", "4")].iter().chain(given) {
         settings.set(key, value).expect("a setting");
     }
-    assert_same(scene, &impostor::Impostor, &settings);
+    assert_same(scene, method, &settings);
 }
 
 /// Means within 0.4 %, texels within 1.5 % in the mean: shadow maps, mip maps and the texture units' eight bits between

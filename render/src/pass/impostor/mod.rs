@@ -2,8 +2,10 @@
 
 use std::sync::OnceLock;
 
+use burnish_core::lighting::area_cube::{self, Asked};
+
 use crate::device::Gpu;
-use crate::layout::types::EffortData;
+use crate::layout::types::{AREA_CUBE_CORRECTED, AREA_CUBE_FEW, AREA_CUBE_NORMALIZED, EffortData};
 use crate::pass::classical::frame_constants;
 use crate::pass::environment::{cube_sampler, cube_view};
 use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
@@ -21,6 +23,8 @@ pub enum Drawn {
     },
     /// Errors of searches; group 3 has the trees.
     Errors,
+    /// The light by the method `area-cube`.
+    AreaCube,
 }
 
 /// The pipelines, one that looks lobes up once and one that samples them.
@@ -35,6 +39,9 @@ pub struct ImpostorPass {
     module: OnceLock<wgpu::ShaderModule>,
     pipelines: [OnceLock<wgpu::RenderPipeline>; 2],
     error: OnceLock<wgpu::RenderPipeline>,
+    area_cube: OnceLock<wgpu::RenderPipeline>,
+    /// Those of the method `area-cube`.
+    tables: OnceLock<wgpu::Buffer>,
 }
 
 impl ImpostorPass {
@@ -68,6 +75,8 @@ impl ImpostorPass {
             module: OnceLock::new(),
             pipelines: Default::default(),
             error: OnceLock::new(),
+            area_cube: OnceLock::new(),
+            tables: OnceLock::new(),
         }
     }
 
@@ -86,6 +95,14 @@ impl ImpostorPass {
         self.error.get_or_init(|| {
             let module = shader::IMPOSTOR_ERROR.module(&self.device);
             self.compiled(&module, &self.error_layout, &[])
+        })
+    }
+
+    /// The pipeline of the method `area-cube`.
+    fn area_cube_pipeline(&self) -> &wgpu::RenderPipeline {
+        self.area_cube.get_or_init(|| {
+            let module = shader::AREA_CUBE.module(&self.device);
+            self.compiled(&module, &self.effort_layout, &frame_constants(self.format))
         })
     }
 
@@ -120,6 +137,10 @@ impl ImpostorPass {
         let maps = &probe.maps;
         let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance, &maps.dimmed].map(cube_view);
         let sampler = cube_sampler(&gpu.device);
+        let area_tables = self.tables.get_or_init(|| {
+            let tables = bytemuck::cast_slice(area_cube::tables::flat());
+            gpu.buffer("area-cube tables", tables, wgpu::BufferUsages::STORAGE)
+        });
         let resources = [
             wgpu::BindingResource::TextureView(&cubes[0]),
             wgpu::BindingResource::TextureView(&cubes[1]),
@@ -131,6 +152,8 @@ impl ImpostorPass {
             wgpu::BindingResource::TextureView(&probe.inverse_depths),
             probe.data.as_entire_binding(),
             places.as_entire_binding(),
+            probe.coarse.as_entire_binding(),
+            area_tables.as_entire_binding(),
         ];
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -140,15 +163,17 @@ impl ImpostorPass {
 
     /// The settings as group 3, with the trees that errors are told by.
     pub(crate) fn effort(&self, gpu: &Gpu, look: &ProbeLook, trees: Option<&TraceTree>) -> wgpu::BindGroup {
+        let Asked { few, corrected, normalized } = look.asked;
+        let flags = [(few, AREA_CUBE_FEW), (corrected, AREA_CUBE_CORRECTED), (normalized, AREA_CUBE_NORMALIZED)];
         let data = EffortData {
             solver: look.effort.solver as u32,
             refinements: look.effort.refinements,
             steps: look.effort.steps,
             tolerance: look.effort.tolerance,
             show: look.show as u32,
+            edge: look.edge,
+            flags: flags.into_iter().filter(|(on, _)| *on).map(|(_, flag)| flag).sum(),
             pad0: 0,
-            pad1: 0,
-            pad2: 0,
         };
         let buffer = gpu.buffer("effort", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let buffers = [Some(&buffer), trees.map(TraceTree::buffer)].into_iter().flatten();
@@ -180,6 +205,7 @@ impl ImpostorPass {
         pass.set_pipeline(match drawn {
             Drawn::Light { sampled } => self.pipeline(sampled),
             Drawn::Errors => self.error_pipeline(),
+            Drawn::AreaCube => self.area_cube_pipeline(),
         });
         pass.set_scissor_rect(left, top, width, height);
         for (index, group) in groups.into_iter().enumerate() {
@@ -213,6 +239,8 @@ fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             texture_entry(7, float(false), wgpu::TextureViewDimension::D2Array),
             buffer_entry(8, fragment, wgpu::BufferBindingType::Uniform),
             buffer_entry(9, fragment, wgpu::BufferBindingType::Uniform),
+            buffer_entry(10, fragment, storage),
+            buffer_entry(11, fragment, storage),
         ],
     })
 }

@@ -48,6 +48,7 @@ fn main() -> Result<(), Failure> {
         size,
         camera,
         settings,
+        lighting: Default::default(),
         tone: ToneMap::Neutral,
         exposure_ev: 0.0,
         mode: Default::default(),

@@ -1,4 +1,4 @@
-//! Times for the bench: the classical method on the device, and a pass that tells how fast that is just now.
+//! Times for the bench: methods on the device, and a pass that tells how fast that is just now.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -6,26 +6,29 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::lighting::classical::{self, FrameSettings};
-use burnish_core::lighting::method::MethodId;
+use burnish_core::lighting::prepared::Asked;
+use burnish_core::lighting::{self, Method, MethodError, MethodId};
 use burnish_core::material::preset::FormChoice;
 use burnish_core::measure::bench::{BenchError, FrameTimer, Frames, Preparation, Shot};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
-use burnish_core::reference::Control;
+use burnish_core::reference::{Control, Options, World};
 use burnish_core::scene::{Environment, Scene, gallery};
 use burnish_core::surface::ggx::Masking;
 use glam::{UVec2, Vec3};
 
-use crate::{Gpu, Passes, RenderError, Renderer, View};
+use crate::{Gpu, Lighting, Passes, RenderError, Renderer, View};
 
 /// Pixels of the calibration pass.
 const CALIBRATION_SIZE: UVec2 = UVec2::new(320, 180);
 
 /// A timer for each method that is drawn on the device; `control` ends a picture between two of its frames.
 pub fn timers(passes: &Arc<Passes>, control: &Control) -> Vec<(MethodId, Box<dyn FrameTimer>)> {
-    let classical_timer =
-        ClassicalTimer { passes: passes.clone(), warm: false, control: control.clone(), opened: Vec::new() };
-    vec![(MethodId(classical::ID), Box::new(classical_timer))]
+    let timer = |method: &'static dyn Method| -> (MethodId, Box<dyn FrameTimer>) {
+        let (passes, control) = (passes.clone(), control.clone());
+        (method.info().id, Box::new(DeviceTimer { method, passes, warm: false, control, opened: Vec::new() }))
+    };
+    lighting::METHODS.iter().filter(|method| crate::draws(method.info().id)).map(|method| timer(*method)).collect()
 }
 
 /// Draws the default scene by lookups: a piece of work that stays the same while methods and scenes change. Returns its
@@ -43,7 +46,8 @@ pub fn calibration(passes: &Arc<Passes>) -> Result<impl FnMut() -> Result<f64, B
     Ok(move || renderer.time_frame(&view).map_err(words))
 }
 
-struct ClassicalTimer {
+struct DeviceTimer {
+    method: &'static dyn Method,
     passes: Arc<Passes>,
     /// The shaders are compiled.
     warm: bool,
@@ -57,11 +61,12 @@ struct Opened {
     scene: Arc<Scene>,
     form: FormChoice,
     masking: Masking,
+    asked: Asked,
     renderer: Rc<RefCell<Renderer>>,
     preparation: Preparation,
 }
 
-struct ClassicalFrames {
+struct DeviceFrames {
     renderer: Rc<RefCell<Renderer>>,
     view: View,
     compared_frames: u32,
@@ -69,19 +74,21 @@ struct ClassicalFrames {
     control: Control,
 }
 
-impl FrameTimer for ClassicalTimer {
+impl FrameTimer for DeviceTimer {
     fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
         let (form, masking) = (classical::form_choice(settings), FrameSettings::new(settings).masking);
+        let asked = Asked::by(self.method, settings);
         self.opened.retain(|opened| Arc::ptr_eq(&opened.scene, &shot.scene));
         let view = View { size: shot.size, camera: shot.camera.clone(), settings: settings.clone(), jitter_frames: 1 };
-        let frames = |opened: &Opened| ClassicalFrames {
+        let frames = |opened: &Opened| DeviceFrames {
             renderer: opened.renderer.clone(),
             view: view.clone(),
             compared_frames: shot.compared_frames,
             preparation: opened.preparation,
             control: self.control.clone(),
         };
-        if let Some(opened) = self.opened.iter().find(|opened| opened.form == form && opened.masking == masking) {
+        let is_it = |opened: &&Opened| opened.form == form && opened.masking == masking && opened.asked == asked;
+        if let Some(opened) = self.opened.iter().find(is_it) {
             return Ok(Box::new(frames(opened)));
         }
         let scene = shot.in_form(form);
@@ -90,19 +97,41 @@ impl FrameTimer for ClassicalTimer {
         }
         let before = allocated(&self.passes.gpu);
         let start = Instant::now();
-        let renderer = Renderer::with_passes(&self.passes, &scene).map_err(words)?;
+        let mut renderer = Renderer::with_passes(&self.passes, &scene).map_err(words)?;
+        let lighting = self.prepare(&scene, settings)?;
+        renderer.light_by(&lighting).map_err(words)?;
         self.passes.gpu.wait().map_err(|e| BenchError::Method(e.to_string()))?;
         let secs = start.elapsed().as_secs_f64();
         let bytes = before.zip(allocated(&self.passes.gpu)).map(|(before, after)| after.saturating_sub(before));
         let (renderer, preparation) = (Rc::new(RefCell::new(renderer)), Preparation { secs, bytes });
-        let opened = Opened { scene: shot.scene.clone(), form, masking, renderer, preparation };
+        let opened = Opened { scene: shot.scene.clone(), form, masking, asked, renderer, preparation };
         let drawn = frames(&opened);
+        if lighting.is_prepared() {
+            // Its own shaders.
+            drawn.renderer.borrow_mut().time_frame(&view).map_err(words)?;
+        }
         self.opened.push(opened);
         Ok(Box::new(drawn))
     }
 }
 
-impl Frames for ClassicalFrames {
+impl DeviceTimer {
+    /// What the processor makes for the method, where the device does not do it by itself.
+    fn prepare(&self, scene: &Arc<Scene>, settings: &Settings) -> Result<Lighting, BenchError> {
+        let id = self.method.info().id;
+        if id.0 == classical::ID {
+            return Ok(Lighting::default());
+        }
+        let world = World::new(scene, Options::new(settings));
+        let prepared = self.method.prepare(&world, settings, self.control.job()).map_err(|error| match error {
+            MethodError::Cancelled => BenchError::Cancelled,
+            MethodError::Unfit(reason) => BenchError::Method(reason),
+        })?;
+        Ok(Lighting::new(id, Some(Arc::new(prepared))))
+    }
+}
+
+impl Frames for DeviceFrames {
     fn preparation(&self) -> Preparation {
         self.preparation
     }

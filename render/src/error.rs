@@ -28,6 +28,9 @@ pub enum RenderError {
         /// Largest side.
         allowed: u32,
     },
+    /// What a method prepared cannot be put on the device.
+    #[error("{0}")]
+    Preparation(String),
     /// There is no light from infinity to show.
     #[error("the scene has no environment; give one")]
     NoEnvironment,

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::lighting::impostor::Show;
 use burnish_core::math::sampling;
 use burnish_core::reference::Contribution;
-use burnish_core::scene::{Camera, Projection};
+use burnish_core::scene::{Bounds, Camera, Projection};
 use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
@@ -14,8 +15,10 @@ use crate::layout::types::{
 };
 use crate::pass::classical::Variant;
 use crate::pass::gbuffer::GBuffer;
+use crate::pass::impostor::Drawn;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
+use crate::probes::ProbeLook;
 use crate::resident::Resident;
 
 /// Textures of one picture size.
@@ -59,7 +62,12 @@ pub(crate) struct Jitter {
 pub(crate) struct Encoding {
     scene_group: wgpu::BindGroup,
     viewer: Vec4,
+    clip_from_world: Mat4,
     samples: u32,
+    /// Group 3 of each probe, where they add to the picture.
+    looks: Vec<wgpu::BindGroup>,
+    /// Errors of searches are shown.
+    errors: bool,
     /// Lamps throw shadows on a ground that is seen.
     catches: bool,
 }
@@ -70,7 +78,7 @@ impl Encoding {
         resident: &Resident,
         camera: &Camera,
         size: UVec2,
-        settings: &FrameSettings,
+        (settings, look): (&FrameSettings, &ProbeLook),
         jitter: Jitter,
     ) -> Encoding {
         let data = view_data(resident, camera, size, settings, jitter);
@@ -79,7 +87,23 @@ impl Encoding {
         let scene_group = resident.on_gpu.group(&gpu.device, &passes.scene_layout, &uniform);
         let is_seen = matches!(settings.contribution, Contribution::All | Contribution::Environment);
         let catches = is_seen && resident.background.catches && resident.shadows.light_count > 0;
-        Encoding { scene_group, viewer: data.viewer, samples: data.samples, catches }
+        // Their light comes from all sources, and is shown with those.
+        let probed = !resident.probe_groups.is_empty() && settings.contribution == Contribution::All;
+        let errors = look.show == Show::Error && !resident.lighting.is_area_cube();
+        let trees = if probed && errors { resident.trees(passes) } else { &[] };
+        let group = |probe: usize| passes.impostor.effort(gpu, look, trees.get(probe));
+        let looks = if probed { (0..resident.probe_groups.len()).map(group).collect() } else { Vec::new() };
+        // Where a tree does not fit the device nothing is shown of errors.
+        let errors = errors && trees.len() == resident.probe_groups.len();
+        Encoding {
+            scene_group,
+            viewer: data.viewer,
+            clip_from_world: data.clip_from_world,
+            samples: data.samples,
+            looks,
+            errors,
+            catches,
+        }
     }
 
     /// What the surfaces are.
@@ -108,8 +132,18 @@ impl Encoding {
             let groups = with(&targets.catcher_group);
             passes.catcher.encode(encoder, &targets.gbuffer, groups, areas, rows.clone());
         }
-        let variant = Variant { sampled: self.samples > 0, areas };
-        passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows);
+        let variant = Variant { sampled: self.samples > 0, areas, probed: !self.looks.is_empty() };
+        passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows.clone());
+        let drawn = match (resident.lighting.is_area_cube(), self.errors) {
+            (true, _) => Drawn::AreaCube,
+            (false, true) => Drawn::Errors,
+            (false, false) => Drawn::Light { sampled: variant.sampled },
+        };
+        for ((probe, look), served) in resident.probe_groups.iter().zip(&self.looks).zip(&resident.served) {
+            let Some(part) = covered(&self.clip_from_world, targets.size, served, &rows) else { continue };
+            let groups = [&self.scene_group, &targets.gbuffer_group, probe, look];
+            passes.impostor.encode(encoder, &targets.frame, groups, drawn, part);
+        }
     }
 
     /// Blended surfaces over them.
@@ -132,6 +166,29 @@ impl Encoding {
         self.light(passes, encoder, resident, targets, 0..targets.size.y);
         self.blend(passes, encoder, resident, targets);
     }
+}
+
+/// The part of some rows of a picture that shows a box of the world: left top corner and size in pixels; `None` where it shows none. A box
+/// that reaches behind the viewer may be anywhere.
+fn covered(clip_from_world: &Mat4, size: UVec2, bounds: &Bounds, rows: &Range<u32>) -> Option<[u32; 4]> {
+    let corner = |i: u32| {
+        let pick = |axis: u32| if i >> axis & 1 == 1 { bounds.max } else { bounds.min };
+        *clip_from_world * Vec3::new(pick(0).x, pick(1).y, pick(2).z).extend(1.0)
+    };
+    let (mut low, mut high) = (Vec2::splat(f32::MAX), Vec2::splat(f32::MIN));
+    for clip in (0..8).map(corner) {
+        if !(clip.w > 1e-6) {
+            (low, high) = (Vec2::NEG_ONE, Vec2::ONE);
+            break;
+        }
+        let ndc = Vec2::new(clip.x, -clip.y) / clip.w;
+        (low, high) = (low.min(ndc), high.max(ndc));
+    }
+    let pixels = |ndc: Vec2| (0.5 * ndc + 0.5).clamp(Vec2::ZERO, Vec2::ONE) * size.as_vec2();
+    // A pixel more at every side: the frame is moved by a part of one.
+    let (low, high) = ((pixels(low) - 1.0).as_uvec2(), (pixels(high) + 2.0).as_uvec2().min(size));
+    let (top, bottom) = (low.y.max(rows.start), high.y.min(rows.end));
+    (low.x < high.x && top < bottom).then(|| [low.x, top, high.x - low.x, bottom - top])
 }
 
 /// Its number in shaders.
@@ -205,5 +262,33 @@ fn viewer(camera: &Camera) -> Vec4 {
     match camera.projection {
         Projection::Perspective { .. } => Vec3::from(camera.world_from_view.translation).extend(1.0),
         Projection::Orthographic { .. } => camera.world_from_view.transform_vector3(Vec3::Z).extend(0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_covers_the_pixels_that_its_points_are_seen_in() {
+        let size = UVec2::new(160, 90);
+        let camera = Camera::look_at("c", Vec3::new(1.0, 2.0, 5.0), Vec3::ZERO, 0.8);
+        let clip = clip_from_world(&camera, size.as_vec2(), Vec2::ZERO);
+        let bounds = Bounds { min: Vec3::new(-0.3, -0.2, -0.4), max: Vec3::new(0.5, 0.6, 0.1) };
+        let all = 0..size.y;
+        let [left, top, width, height] = covered(&clip, size, &bounds, &all).expect("it is in the picture");
+        assert!(width < size.x / 2 && height < size.y / 2, "{width} {height}");
+        for i in 0..1000_u32 {
+            let share = Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32) / 9.0;
+            let point = clip * (bounds.min + share * (bounds.max - bounds.min)).extend(1.0);
+            let at = (Vec2::new(point.x, -point.y) / point.w * 0.5 + 0.5) * size.as_vec2();
+            assert!((left as f32..(left + width) as f32).contains(&at.x), "{at}");
+            assert!((top as f32..(top + height) as f32).contains(&at.y), "{at}");
+        }
+        assert_eq!(covered(&clip, size, &bounds, &(0..top)), None, "rows above it");
+        let behind = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
+        assert_eq!(covered(&clip, size, &behind, &all), Some([0, 0, 160, 90]), "the viewer is inside");
+        let beside = Bounds { min: Vec3::new(50.0, 0.0, -1.0), max: Vec3::new(51.0, 1.0, 0.0) };
+        assert_eq!(covered(&clip, size, &beside, &all), None);
     }
 }

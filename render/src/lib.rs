@@ -4,6 +4,8 @@
 //! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere. Lighting formulas live in `burnish-core` as leaves; here are
 //! the passes that join and run them.
 
+use burnish_core::lighting::{area_cube, classical, impostor};
+
 pub mod bench;
 mod clock;
 pub mod device;
@@ -13,6 +15,7 @@ pub mod layout;
 pub mod pass;
 mod passes;
 mod plate;
+mod probes;
 pub mod readback;
 pub mod renderer;
 mod resident;
@@ -21,6 +24,7 @@ pub mod shader;
 mod tables;
 mod textures;
 pub mod times;
+pub mod trace;
 pub mod viewport;
 
 pub use device::{AdapterReport, Gpu, GpuError, adapters};
@@ -28,10 +32,11 @@ pub use error::RenderError;
 pub use pass::display::Display;
 pub use passes::Passes;
 pub use plate::Plate;
+pub use probes::Lighting;
 pub use renderer::{Renderer, View};
 pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};
 
 /// The device has a pass for this lighting method; without one a method draws on the processor, if it can.
 pub fn draws(method: burnish_core::lighting::MethodId) -> bool {
-    method.0 == burnish_core::lighting::classical::ID
+    [classical::ID, impostor::ID, area_cube::ID].contains(&method.0)
 }

@@ -12,6 +12,7 @@ use crate::pass::display::DisplayPass;
 use crate::pass::environment::{EnvironmentPass, background_layout};
 use crate::pass::forward::ForwardPass;
 use crate::pass::gbuffer::GBufferPass;
+use crate::pass::impostor::ImpostorPass;
 use crate::pass::scene_layout;
 use crate::pass::shadow::ShadowPass;
 use crate::scene::material_layout;
@@ -27,6 +28,7 @@ pub struct Passes {
     pub(crate) shadow: ShadowPass,
     pub(crate) gbuffer: GBufferPass,
     pub(crate) classical: ClassicalPass,
+    pub(crate) impostor: ImpostorPass,
     pub(crate) catcher: CatcherPass,
     pub(crate) forward: ForwardPass,
     pub(crate) accumulate: AccumulatePass,
@@ -44,12 +46,14 @@ impl Passes {
         let mesh = [Some(&scene_layout), Some(&material_layout)];
         let lit = [Some(&scene_layout), Some(&material_layout), Some(&light_layout)];
         let format = frame_format(gpu);
+        let classical = ClassicalPass::new(gpu, &scene_layout, &light_layout, &background_layout, format);
         Passes {
             gpu: gpu.clone(),
             environment: EnvironmentPass::new(gpu),
             shadow: ShadowPass::new(gpu, &mesh),
             gbuffer: GBufferPass::new(gpu, &mesh),
-            classical: ClassicalPass::new(gpu, &scene_layout, &light_layout, &background_layout, format),
+            impostor: ImpostorPass::new(gpu, &scene_layout, classical.gbuffer_layout(), format),
+            classical,
             catcher: CatcherPass::new(gpu, &scene_layout, &light_layout, &background_layout),
             forward: ForwardPass::new(gpu, &lit, format),
             accumulate: AccumulatePass::new(gpu),
@@ -66,9 +70,9 @@ impl Passes {
         let passes = self.clone();
         let compile = move || {
             AlbedoTable::get();
-            passes.classical.pipeline(Variant { sampled: false, areas: false });
+            passes.classical.pipeline(Variant { sampled: false, areas: false, probed: false });
             passes.gbuffer.warm_up();
-            passes.classical.pipeline(Variant { sampled: true, areas: false });
+            passes.classical.pipeline(Variant { sampled: true, areas: false, probed: false });
         };
         // Where there is no thread to be had it is compiled when it is needed.
         let _ = std::thread::Builder::new().name("pipelines".into()).spawn(compile);

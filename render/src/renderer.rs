@@ -19,6 +19,7 @@ use crate::frame::{Encoding, Jitter, Targets};
 use crate::pass::accumulate::Sums;
 use crate::pass::environment::EnvironmentMaps;
 use crate::passes::Passes;
+use crate::probes::{Lighting, ProbeLook};
 use crate::readback::read_texture;
 use crate::resident::{Loader, Quality, Resident};
 
@@ -31,7 +32,7 @@ pub struct View {
     pub size: UVec2,
     /// From where.
     pub camera: Camera,
-    /// Settings of the `classical` method.
+    /// Settings of the method.
     pub settings: Settings,
     /// Frames that are averaged, each moved by a part of a pixel; 1 samples the centres.
     pub jitter_frames: u32,
@@ -44,6 +45,7 @@ pub struct Renderer {
     loader: Loader,
     resident: Resident,
     contribution: Contribution,
+    lighting: Lighting,
     targets: Option<(Targets, Sums)>,
 }
 
@@ -56,13 +58,23 @@ impl Renderer {
     /// Uploads the scene for passes that are compiled already.
     pub fn with_passes(passes: &Arc<Passes>, scene: &Arc<Scene>) -> Result<Renderer, RenderError> {
         let mut loader = Loader::new(passes, Quality::Full);
-        let resident = loader.load(scene, Masking::Correlated, None)?;
-        Ok(Renderer { loader, resident, contribution: Contribution::All, targets: None })
+        let resident = loader.load(scene, Masking::Correlated, &Lighting::default(), None)?;
+        Ok(Renderer { loader, resident, contribution: Contribution::All, lighting: Lighting::default(), targets: None })
     }
 
     /// Goes over to another valid scene; only what differs is made anew. On an error the old one stays.
     pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
-        self.resident = self.loader.load(scene, self.resident.masking, Some(&self.resident))?;
+        self.resident = self.loader.load(scene, self.resident.masking, &self.lighting, Some(&self.resident))?;
+        Ok(())
+    }
+
+    /// Lights the scene by a method from now on. On an error it is lit as before.
+    pub fn light_by(&mut self, lighting: &Lighting) -> Result<(), RenderError> {
+        if !self.lighting.is_like(lighting) {
+            let Resident { scene, masking, .. } = &self.resident;
+            self.resident = self.loader.load(&scene.clone(), *masking, lighting, Some(&self.resident))?;
+            self.lighting = lighting.clone();
+        }
         Ok(())
     }
 
@@ -100,12 +112,12 @@ impl Renderer {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, sums) = self.begin(&passes, view)?;
-        let settings = self.settings(view);
+        let (settings, look) = (self.settings(view), ProbeLook::new(&view.settings));
         // Stamps of a software rasteriser mean little.
         let clock = if gpu.is_software() { None } else { DeviceClock::new(gpu) };
         let start = Instant::now();
         let jitter = Jitter { frame: 0, frames: 1 };
-        let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, &settings, jitter);
+        let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, (&settings, &look), jitter);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         clock.iter().for_each(|clock| clock.start(&mut encoder));
         encoding.whole(&passes, &mut encoder, &self.resident, &targets);
@@ -130,7 +142,7 @@ impl Renderer {
         let settings = self.settings(view);
         if settings.masking != self.resident.masking {
             let scene = self.resident.scene.clone();
-            self.resident = self.loader.load(&scene, settings.masking, Some(&self.resident))?;
+            self.resident = self.loader.load(&scene, settings.masking, &self.lighting, Some(&self.resident))?;
         }
         Ok(match self.targets.take() {
             Some((targets, sums)) if targets.size == view.size => (targets, sums),
@@ -155,14 +167,14 @@ impl Renderer {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, mut sums) = self.begin(&passes, view)?;
-        let settings = self.settings(view);
+        let (settings, look) = (self.settings(view), ProbeLook::new(&view.settings));
         let frames = view.jitter_frames.max(1);
         for frame in 0..frames {
             if !going_on(frame as f32 / frames as f32) {
                 return Ok(None);
             }
             let jitter = Jitter { frame, frames };
-            let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, &settings, jitter);
+            let encoding = Encoding::new(&passes, &self.resident, &view.camera, view.size, (&settings, &look), jitter);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             if frame == 0 {
                 sums.clear(&mut encoder);

@@ -3,10 +3,13 @@
 //! A [`Resident`] never changes. A changed scene becomes a new one that shares with the old whatever is still right, so
 //! that a failure on the way leaves the old one whole.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use burnish_core::lighting::Prepared;
+use burnish_core::lighting::probe::{self, Probes};
 use burnish_core::scene::{Bounds, Environment, Scene};
 use burnish_core::surface::ggx::Masking;
+use burnish_core::trace::Accel;
 use glam::Vec3;
 
 use crate::error::RenderError;
@@ -14,8 +17,10 @@ use crate::pass::classical::light_group;
 use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
 use crate::passes::Passes;
+use crate::probes::{GpuProbes, Lighting, places};
 use crate::scene::{GpuScene, MaterialGroups};
 use crate::tables::{TableCache, Tables};
+use crate::trace::TraceTree;
 
 /// Bytes of cubes that are kept beside those in use.
 const SPARE_ENVIRONMENT_BYTES: u64 = 512 << 20;
@@ -51,6 +56,15 @@ pub(crate) struct Resident {
     pub background: BackgroundMap,
     /// Bind group 2 of what lights surfaces.
     pub lights: wgpu::BindGroup,
+    /// What takes the place of the environment.
+    pub lighting: Lighting,
+    /// Bind group 2 of each probe.
+    pub probe_groups: Vec<wgpu::BindGroup>,
+    probes: Option<Arc<GpuProbes>>,
+    /// Box around what each probe serves.
+    pub served: Vec<Bounds>,
+    /// Of the surroundings of each probe, made when first asked for.
+    trees: OnceLock<Vec<TraceTree>>,
     bounds: Bounds,
     tables: Arc<TableBuffer>,
 }
@@ -76,13 +90,14 @@ impl Loader {
         &mut self,
         scene: &Arc<Scene>,
         masking: Masking,
+        lighting: &Lighting,
         before: Option<&Resident>,
     ) -> Result<Resident, RenderError> {
         let environment = scene.environment.as_ref().ok_or(RenderError::NoEnvironment)?;
         let passes = self.passes.clone();
         let gpu = &passes.gpu;
         let tables = Tables::new(&mut self.tables, scene, masking);
-        let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, before.map(|b| &b.on_gpu))?;
+        let on_gpu = GpuScene::new(gpu, &mut self.materials, scene, &tables, lighting, before.map(|b| &b.on_gpu))?;
         let (maps, quality) = self.environments.get(&passes, environment, self.quality)?;
         let bounds = match before {
             Some(before) if same_places(&before.scene, scene) => before.bounds,
@@ -103,7 +118,25 @@ impl Loader {
                 floats: tables.floats,
             }),
         };
-        let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, &tables.buffer);
+        let probes = match (lighting.prepared(), before.and_then(|before| before.probes.as_ref())) {
+            (Some(prepared), Some(before)) if Arc::ptr_eq(prepared, &before.prepared) => Some(before.clone()),
+            (Some(prepared), _) => Some(Arc::new(GpuProbes::new(gpu, prepared)?)),
+            (None, _) => None,
+        };
+        let places = match &probes {
+            Some(probes) => probes.places.clone(),
+            None => places(gpu, Probes::of(&Prepared::nothing())),
+        };
+        let lights = light_group(gpu, &passes.light_layout, &maps, &shadows, (&tables.buffer, &places));
+        let served = match before {
+            Some(before) if before.lighting.is_like(lighting) && same_places(&before.scene, scene) => {
+                before.served.clone()
+            }
+            _ => lighting.prepared().map_or_else(Vec::new, |prepared| served(scene, prepared)),
+        };
+        let each = probes.iter().flat_map(|probes| &probes.each);
+        let group = |probe| passes.impostor.group(gpu, probe, &places, &tables.buffer);
+        let probe_groups = each.map(group).collect();
         let seen = before.map(|before| &before.background);
         let background = BackgroundMap::new(gpu, &passes.background_layout, scene, seen)?;
         gpu.check()?;
@@ -116,6 +149,11 @@ impl Loader {
             shadows,
             background,
             lights,
+            lighting: lighting.clone(),
+            probe_groups,
+            probes,
+            served,
+            trees: OnceLock::new(),
             bounds,
             tables,
         })
@@ -125,6 +163,34 @@ impl Loader {
     pub fn refined(&mut self, environment: &Environment, maps: EnvironmentMaps) {
         self.environments.insert(environment, Arc::new(maps), Quality::Full);
     }
+}
+
+impl Resident {
+    /// The triangles around each probe, without what it serves; none where they do not fit the device.
+    pub fn trees(&self, passes: &Passes) -> &[TraceTree] {
+        self.trees.get_or_init(|| {
+            let Some(prepared) = self.lighting.prepared() else { return Vec::new() };
+            let tree = |maps: &Prepared| {
+                let around = probe::surroundings(&self.scene, maps.whole("served"));
+                TraceTree::new(&passes.gpu, &Accel::new(&around))
+            };
+            prepared.parts().iter().map(tree).collect::<Result<_, _>>().unwrap_or_default()
+        })
+    }
+
+    /// It is of this very scene, lit like this.
+    pub fn is_of(&self, scene: &Arc<Scene>, masking: Masking, lighting: &Lighting) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.masking == masking && self.lighting.is_like(lighting)
+    }
+}
+
+/// Boxes around what probes serve.
+fn served(scene: &Scene, prepared: &Prepared) -> Vec<Bounds> {
+    let of = |maps: &Prepared| {
+        let served: Vec<usize> = maps.whole("served").iter().map(|i| *i as usize).collect();
+        scene.bounds_of(&served)
+    };
+    prepared.parts().iter().map(of).collect()
 }
 
 /// True when every instance is where it was: the bounds stay.
@@ -142,10 +208,10 @@ fn same_places(a: &Scene, b: &Scene) -> bool {
 /// Prepared environments, the last used first. Turned and scaled copies of one map share its cubes.
 #[derive(Default)]
 struct EnvironmentCache {
-    known: Vec<Prepared>,
+    known: Vec<Cubes>,
 }
 
-struct Prepared {
+struct Cubes {
     texels: Arc<[Vec3]>,
     width: u32,
     maps: Arc<EnvironmentMaps>,
@@ -173,7 +239,7 @@ impl EnvironmentCache {
     fn insert(&mut self, environment: &Environment, maps: Arc<EnvironmentMaps>, quality: Quality) {
         self.known.retain(|prepared| !prepared.is_of(environment));
         let Environment { texels, width, .. } = environment;
-        self.known.insert(0, Prepared { texels: texels.clone(), width: *width, maps, quality });
+        self.known.insert(0, Cubes { texels: texels.clone(), width: *width, maps, quality });
         let mut spare = 0;
         let kept = self.known.iter().skip(1).take_while(|prepared| {
             spare += bytes(&prepared.maps);
@@ -184,7 +250,7 @@ impl EnvironmentCache {
     }
 }
 
-impl Prepared {
+impl Cubes {
     fn is_of(&self, environment: &Environment) -> bool {
         Arc::ptr_eq(&self.texels, &environment.texels) && self.width == environment.width
     }

@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, classical};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
 use burnish_core::measure::view;
 use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
@@ -20,10 +20,12 @@ pub struct Shader {
 const TYPES: &str = include_str!("layout/types.wgsl");
 const TEXEL: &str = include_str!("pass/gbuffer/texel.wgsl");
 const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
+const SURFACE: &str = include_str!("pass/classical/surface.wgsl");
 const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
 const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 const RAYS: &str = include_str!("pass/classical/rays.wgsl");
+const IMPOSTOR_LOOK: &str = include_str!("pass/impostor/look.wgsl");
 const BACKGROUND: &str = include_str!("pass/environment/background.wgsl");
 
 /// Fills the G-buffer.
@@ -50,28 +52,82 @@ pub static ENVIRONMENT: Shader = Shader {
 /// Lights the G-buffer.
 pub static CLASSICAL: Shader = Shader {
     name: "classical",
-    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF],
+    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF, &probe::WGSL],
     files: &[
         TYPES,
         TEXEL,
         SCENE_BINDINGS,
+        SURFACE,
         SHADE,
         LAMPS,
         SOFT,
         BACKGROUND,
+        GBUFFER_BINDINGS,
         RAYS,
         include_str!("pass/classical/classical.wgsl"),
+    ],
+};
+
+/// Adds what the surroundings of a probe send.
+pub static IMPOSTOR: Shader = Shader {
+    name: "impostor",
+    leaves: &[&classical::WGSL, &probe::WGSL, &impostor::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        IMPOSTOR_LOOK,
+        include_str!("pass/impostor/impostor.wgsl"),
+    ],
+};
+
+/// Adds the light of a probe's coarse cube.
+pub static AREA_CUBE: Shader = Shader {
+    name: "area_cube",
+    leaves: &[&classical::WGSL, &probe::WGSL, &impostor::WGSL, &area_cube::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        IMPOSTOR_LOOK,
+        include_str!("pass/area_cube/area_cube.wgsl"),
+    ],
+};
+
+/// Shows how far searches are off.
+pub static IMPOSTOR_ERROR: Shader = Shader {
+    name: "impostor error",
+    leaves: &[&classical::WGSL, &probe::WGSL, &impostor::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        IMPOSTOR_LOOK,
+        "@group(3) @binding(1) var<storage, read> trace_words: array<vec4u>;",
+        include_str!("trace/numbers.wgsl"),
+        include_str!("trace/trace.wgsl"),
+        include_str!("pass/impostor/error.wgsl"),
     ],
 };
 
 /// Shadows on the ground of the background.
 pub static CATCHER: Shader = Shader {
     name: "catcher",
-    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF],
+    leaves: &[&classical::WGSL, &area::WGSL, &ground::LEAF, &probe::WGSL],
     files: &[
         TYPES,
         TEXEL,
         SCENE_BINDINGS,
+        SURFACE,
         SHADE,
         LAMPS,
         SOFT,
@@ -84,8 +140,8 @@ pub static CATCHER: Shader = Shader {
 /// Blended surfaces.
 pub static FORWARD: Shader = Shader {
     name: "forward",
-    leaves: &[&classical::WGSL, &area::WGSL, &micro_normal::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, SHADE, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
+    leaves: &[&classical::WGSL, &area::WGSL, &micro_normal::WGSL, &probe::WGSL],
+    files: &[TYPES, TEXEL, RESOLVE, SURFACE, SHADE, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
 };
 
 /// Adds a frame to the sum.
@@ -99,19 +155,59 @@ pub static DISPLAY: Shader = Shader {
     files: &[TYPES, include_str!("pass/display/display.wgsl")],
 };
 
+/// Looks for what rays meet.
+pub static TRACE: Shader = Shader {
+    name: "trace",
+    leaves: &[],
+    files: &[
+        TYPES,
+        TRACE_BINDING,
+        include_str!("trace/numbers.wgsl"),
+        include_str!("trace/trace.wgsl"),
+        include_str!("trace/pass.wgsl"),
+    ],
+};
+
 /// Times reflectance curves.
 pub static TIMES: Shader =
     Shader { name: "times", leaves: &[&fresnel::WGSL], files: &[include_str!("times/times.wgsl")] };
 
 /// Every shader of the renderer. Tests validate all of them without a device.
-pub static ALL: &[&Shader] =
-    &[&GBUFFER, &SHADOW, &ENVIRONMENT, &CLASSICAL, &CATCHER, &FORWARD, &ACCUMULATE, &DISPLAY, &TIMES];
+pub static ALL: &[&Shader] = &[
+    &GBUFFER,
+    &SHADOW,
+    &ENVIRONMENT,
+    &CLASSICAL,
+    &IMPOSTOR,
+    &IMPOSTOR_ERROR,
+    &AREA_CUBE,
+    &CATCHER,
+    &FORWARD,
+    &ACCUMULATE,
+    &DISPLAY,
+    &TRACE,
+    &TIMES,
+];
 
 /// The bindings of `resolve.wgsl` for passes that draw no vertices.
 const SCENE_BINDINGS: &str = "
 @group(0) @binding(0) var<uniform> view: ViewData;
 @group(0) @binding(1) var<storage, read> instances: array<InstanceData>;
 @group(0) @binding(2) var<storage, read> materials: array<MaterialData>;
+";
+
+/// The G-buffer as textures.
+const GBUFFER_BINDINGS: &str = "
+@group(1) @binding(0) var words0: texture_2d<u32>;
+@group(1) @binding(1) var words1: texture_2d<u32>;
+@group(1) @binding(2) var words2: texture_2d<u32>;
+@group(1) @binding(3) var words3: texture_2d<u32>;
+@group(1) @binding(4) var depth: texture_depth_2d;
+";
+
+/// The buffer of a `TraceTree`.
+const TRACE_BINDING: &str = "
+@group(0) @binding(0) var<storage, read> trace_words: array<vec4u>;
 ";
 
 /// Functions that leaves ask for and passes that do not light surfaces never call.

@@ -5,7 +5,7 @@ use std::f32::consts;
 
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, area_cube, classical, impostor};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
 use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
@@ -74,6 +74,12 @@ fn every_pass_validates() {
 fn what_is_timed_without_a_curve_is_the_same_in_both_languages() {
     let times = validated("times", &shader::TIMES.source());
     assert_eq!(constant(&times, "FORM_NONE"), f64::from(burnish_render::times::FORM_NONE));
+}
+
+#[test]
+fn as_many_children_of_a_tree_wait_as_the_shader_has_places() {
+    let trace = validated("trace", &shader::TRACE.source());
+    assert_eq!(constant(&trace, "TRACE_STACK"), burnish_render::trace::STACK as f64);
 }
 
 #[test]
@@ -192,6 +198,13 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("BLINN_PHONG_MICROFACET", f64::from(Variant::Microfacet as u32)),
         ],
         "layered" => vec![("LAYERED_GGX", f64::from(layered::GGX))],
+        "probe" => vec![
+            ("PROBE_BLEND", probe::BLEND.into()),
+            ("PROBE_FADE", probe::FADE.into()),
+            ("PROBE_JUMP", probe::JUMP.into()),
+            ("PROBE_ALL", (probe::MOST as u32).into()),
+            ("PROBE_FAR", f64::from(1e30_f32)),
+        ],
         "impostor" => vec![
             ("IMPOSTOR_CLASSICAL", impostor::CLASSICAL.into()),
             ("IMPOSTOR_SPHERE", impostor::SPHERE.into()),
@@ -203,6 +216,12 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_MIXED", impostor::MIXED.into()),
             ("IMPOSTOR_MARCH", impostor::MARCH.into()),
             ("IMPOSTOR_EPSILON", impostor::EPSILON.into()),
+            ("IMPOSTOR_SHOW_LIGHT", impostor::SHOW_LIGHT.into()),
+            ("IMPOSTOR_SHOW_LOOKUPS", impostor::SHOW_LOOKUPS.into()),
+            ("IMPOSTOR_SHOW_RATIO", impostor::SHOW_RATIO.into()),
+            ("IMPOSTOR_SHOW_ERROR", impostor::SHOW_ERROR.into()),
+            ("IMPOSTOR_MOST_LOOKUPS", impostor::MOST_LOOKUPS.into()),
+            ("IMPOSTOR_MOST_RATIO", impostor::MOST_RATIO.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![

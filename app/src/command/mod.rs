@@ -11,6 +11,7 @@ mod fresnel_report;
 mod fresnel_times;
 mod gallery;
 mod glb;
+mod hits;
 mod info;
 mod lighting;
 mod measure;
@@ -53,6 +54,8 @@ pub enum Command {
     Compare(compare::Args),
     /// Chart what lighting methods cost against how wrong they are
     Chart(chart::Args),
+    /// Measure how far the searches of the method impostor are off what they look for, and what they cost
+    Hits(hits::Args),
     /// List the lighting methods with what they cover and their settings
     Methods(methods::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
@@ -79,6 +82,7 @@ impl Command {
             Command::Snapshot(args) => snapshot::run(args, out, err),
             Command::Compare(args) => compare::run(args, out, err),
             Command::Chart(args) => chart::run(args, out, err),
+            Command::Hits(args) => hits::run(args, out, err),
             Command::Methods(args) => methods::run(args, out),
             Command::Measure(args) => measure::run(args, out),
             Command::FresnelBalls(args) => fresnel_balls::run(args, out),

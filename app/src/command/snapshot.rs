@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{self, Document};
 use burnish_core::file::{PictureFormat, read_picture, write_picture};
+use burnish_core::job::Handle;
+use burnish_core::lighting::Store;
 use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::measure::{PIXELS_PER_DEGREE, flip};
 use burnish_core::picture::Picture;
@@ -16,7 +18,7 @@ use glam::UVec2;
 use crate::failure::{Exit, Failure, printable};
 use crate::value::{self, Pick};
 use crate::window::offscreen::Offscreen;
-use crate::window::{Options, Pane, Session, Workbench};
+use crate::window::{Folders, Options, Pane, Session, Workbench, lighting_now};
 
 /// Jittered frames of the picture, as many as the window draws at rest.
 const FRAMES: u32 = 16;
@@ -162,6 +164,9 @@ fn viewport(session: &Session, size: UVec2, err: &mut dyn Write) -> Result<(Pict
     for name in renderer.unshadowed_lights() {
         writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
     }
+    let store = Folders::of_user().map_or_else(Store::none, |folders| Store::within(&folders.prepared()));
+    let prepared = lighting_now(session.layers(), session.scene(), &store, &Handle::default());
+    renderer.light_by(&prepared.map_err(Failure::resources)?).map_err(Failure::resources)?;
     let camera = view.camera.camera();
     let of_document = View { size, camera, settings: lighting.settings(), jitter_frames: FRAMES };
     let picture = renderer.render(&of_document).map_err(Failure::resources)?;

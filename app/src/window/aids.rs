@@ -10,7 +10,20 @@ use burnish_core::scene::Scene;
 pub struct Aids {
     /// The picture, or what judges its exposure.
     pub mode: DisplayMode,
+    /// Marks of probes in the picture.
+    pub probes: ProbeMarks,
     source: Source,
+}
+
+/// What the picture shows of probes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ProbeMarks {
+    /// Where they stand, and the box of the chosen one.
+    pub places: bool,
+    /// The surfaces that the chosen one sees, as points at their distances.
+    pub distances: bool,
+    /// Name of the chosen one; the first when there is none of it.
+    pub chosen: String,
 }
 
 /// Whose light is shown. Lights go by their names, and by which of those of the name: their places change as others are muted.

@@ -38,7 +38,7 @@ mod user_presets;
 mod widget;
 mod workbench;
 
-pub use aids::{Aids, Source};
+pub use aids::{Aids, ProbeMarks, Source};
 pub use chart::{Chart, ErrorMeasure};
 pub use commands::{Command, Entry, Menu, TABLE};
 pub use compare::{Compare, CompareView, Legend};
@@ -46,6 +46,7 @@ pub use files::Folders;
 pub use native::run;
 pub use panel::{Pane, Tool};
 pub use preferences::Preferences;
+pub use preparations::lighting_now;
 pub use reference::{Look, Reference};
 pub use request::{Purpose, Request, Requests};
 pub use session::{Selection, Session};

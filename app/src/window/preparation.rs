@@ -3,7 +3,7 @@
 //! After an edit another thread tells by hash whether the preparation is still that of the scene. One that was quick is
 //! made anew by itself; else it stays in use with a badge until someone asks for it.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use burnish_core::job::{Handle, Job, Outcome};
@@ -14,6 +14,8 @@ use burnish_core::reference::{Options, World};
 use burnish_core::scene::Scene;
 use eframe::egui;
 
+/// How long a scene rests before what was drafted is made in full.
+const REST: Duration = Duration::from_millis(700);
 /// Time of a preparation that nobody minds to be made after every edit.
 const QUICK: Duration = Duration::from_secs(1);
 
@@ -31,6 +33,8 @@ pub enum State {
     Working(f32),
     /// Of this very scene.
     Fresh,
+    /// A coarse stand-in of this very scene; the whole is made when nothing changes for a while.
+    Draft,
     /// Of the scene before an edit.
     Stale,
 }
@@ -49,6 +53,19 @@ struct Held {
     key: String,
     prepared: Arc<Prepared>,
     took: Duration,
+    /// Where it fails, for people.
+    warnings: Vec<String>,
+}
+
+/// What a job is to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Wanted {
+    /// To tell whether what is held is still right.
+    Comparison,
+    /// Something for now.
+    Draft,
+    /// The whole.
+    Whole,
 }
 
 /// What a job found.
@@ -57,6 +74,7 @@ enum Found {
     Same,
     /// It is not, and nobody asked for another.
     Other,
+    Drafted(Held),
     Made(Held),
     Failed(MethodError),
 }
@@ -72,6 +90,12 @@ pub struct Preparation {
     job: Option<Job<Found>>,
     /// The job is about a subject before the present one.
     outdated: bool,
+    /// The job makes the whole of a method that has drafts.
+    is_whole: bool,
+    /// When a draft becomes the whole.
+    full_at: Option<Instant>,
+    /// The scene that was prepared last, ready for rays: the next shares with it what stayed.
+    world: Arc<Mutex<Option<World>>>,
     fault: Option<String>,
 }
 
@@ -82,27 +106,45 @@ impl Subject {
             && self.settings == other.settings
     }
 
-    /// Compares what is held by `known` with the subject; makes another where `anew` is set.
-    fn work(&self, known: Option<String>, anew: bool, store: &Store, job: &Handle) -> Found {
+    /// Compares what is held by `known` with the subject; makes another as `wanted`.
+    fn work(
+        &self,
+        known: Option<String>,
+        wanted: Wanted,
+        store: &Store,
+        world: &Mutex<Option<World>>,
+        job: &Handle,
+    ) -> Found {
         let Subject { method, settings, scene } = self;
         let key = key(*method, settings, scene);
         if known.as_ref() == Some(&key) {
             return Found::Same;
         }
         let start = Instant::now();
-        let kept = store.read(&key);
-        if kept.is_none() && !anew {
+        let held = |key: String, prepared: Prepared| {
+            let (took, warnings) = (start.elapsed(), method.warnings(scene, &prepared, settings));
+            Held { method: method.info().id, key, prepared: Arc::new(prepared), took, warnings }
+        };
+        if let Some(kept) = store.read(&key) {
+            return Found::Made(held(key, kept));
+        }
+        if wanted == Wanted::Comparison {
             return Found::Other;
         }
-        let made = kept.map_or_else(
-            || store.prepare(&key, *method, &World::new(scene, Options::new(settings)), settings, job),
-            Ok,
-        );
-        match made {
-            Ok(prepared) => {
-                let prepared = Arc::new(prepared);
-                Found::Made(Held { method: method.info().id, key, prepared, took: start.elapsed() })
+        let mut last = world.lock().unwrap_or_else(PoisonError::into_inner);
+        let options = Options::new(settings);
+        let world = last.take().map_or_else(|| World::new(scene, options), |old| old.updated(scene, options));
+        *last = Some(world.clone());
+        drop(last);
+        if wanted == Wanted::Draft {
+            match method.draft(&world, settings, job) {
+                Some(Ok(draft)) => return Found::Drafted(held(format!("draft {key}"), draft)),
+                Some(Err(error)) => return Found::Failed(error),
+                None => {}
             }
+        }
+        match store.prepare(&key, *method, &world, settings, job) {
+            Ok(prepared) => Found::Made(held(key, prepared)),
             Err(error) => Found::Failed(error),
         }
     }
@@ -118,6 +160,9 @@ impl Default for Preparation {
             state: None,
             job: None,
             outdated: false,
+            is_whole: false,
+            full_at: None,
+            world: Arc::default(),
             fault: None,
         }
     }
@@ -144,27 +189,48 @@ impl Preparation {
             }
             self.fault = None;
             self.outdated = true;
+            self.full_at = None;
             self.subject = Some(subject);
+            if std::mem::take(&mut self.is_whole) {
+                // The processor is needed for a draft of what there is now.
+                self.job = None;
+            }
         }
         self.poll();
+        if let Some(at) = self.full_at.filter(|_| self.job.is_none() && !self.outdated) {
+            let left = at.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                self.full_at = None;
+                self.start(Wanted::Whole, ctx);
+            } else {
+                ctx.request_repaint_after(left);
+            }
+        }
         if self.outdated && self.job.is_none() {
             let quick = self.held.as_ref().is_none_or(|held| held.took <= self.quick);
-            self.start(quick, ctx);
+            let drafts = method.drafts() && self.quick != Duration::MAX;
+            let wanted = match (quick, drafts) {
+                (_, true) => Wanted::Draft,
+                (true, false) => Wanted::Whole,
+                (false, false) => Wanted::Comparison,
+            };
+            self.start(wanted, ctx);
         }
     }
 
     /// Makes it anew.
     pub fn again(&mut self, ctx: &egui::Context) {
-        self.start(true, ctx);
+        self.start(Wanted::Whole, ctx);
     }
 
     /// Ends what runs; a stale one stays in use.
     pub fn cancel(&mut self) {
         self.job = None;
+        (self.full_at, self.is_whole) = (None, false);
         self.state = Some(if self.held.is_some() { State::Stale } else { State::Missing });
     }
 
-    fn start(&mut self, anew: bool, ctx: &egui::Context) {
+    fn start(&mut self, wanted: Wanted, ctx: &egui::Context) {
         let Some(subject) = self.subject.clone() else { return };
         self.outdated = false;
         if subject.method.info().reads == Reads::NOTHING {
@@ -172,9 +238,11 @@ impl Preparation {
             return;
         }
         let (known, store, ctx) = (self.held.as_ref().map(|held| held.key.clone()), self.store.clone(), ctx.clone());
+        self.is_whole = wanted == Wanted::Whole && subject.method.drafts();
+        let world = self.world.clone();
         let label = format!("Preparing {}", subject.method.info().title);
         let wake = move || ctx.request_repaint();
-        self.job = Some(Job::spawn(label, wake, move |job| subject.work(known, anew, &store, job)));
+        self.job = Some(Job::spawn(label, wake, move |job| subject.work(known, wanted, &store, &world, job)));
     }
 
     fn poll(&mut self) {
@@ -184,9 +252,15 @@ impl Preparation {
             Some(Outcome::Failed) => Found::Failed(MethodError::Unfit("it failed for an unknown reason".into())),
         };
         self.job = None;
+        self.is_whole = false;
         self.state = Some(match found {
             Found::Same => State::Fresh,
             Found::Other => State::Stale,
+            Found::Drafted(held) => {
+                self.held = Some(held);
+                self.full_at = Some(Instant::now() + REST);
+                State::Draft
+            }
             Found::Made(held) => {
                 self.held = Some(held);
                 State::Fresh
@@ -219,6 +293,11 @@ impl Preparation {
         self.held.as_ref().map(|held| (held.prepared.bytes(), held.took))
     }
 
+    /// Where what there is fails, for people.
+    pub fn warnings(&self) -> &[String] {
+        self.held.as_ref().map_or(&[], |held| &held.warnings)
+    }
+
     /// Why there is no other.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
@@ -229,9 +308,9 @@ impl Preparation {
         self.subject.as_ref().map(|subject| subject.method)
     }
 
-    /// Another thread works on it.
+    /// Another thread works on it, or will when the scene has rested.
     pub fn is_busy(&self) -> bool {
-        self.job.is_some()
+        self.job.is_some() || self.full_at.is_some()
     }
 }
 

@@ -1,10 +1,14 @@
 //! The preparations of all methods that light a scene, one for each that looks up another.
 
 use std::sync::Arc;
+use std::time::Duration;
 
+use burnish_core::job::Handle;
 use burnish_core::lighting::prepared::Asked;
-use burnish_core::lighting::{Layer, Layers, Prepared, Store};
+use burnish_core::lighting::{Layer, Layers, MethodError, Prepared, Store, classical};
+use burnish_core::reference::{Options, World};
 use burnish_core::scene::Scene;
+use burnish_render::Lighting;
 use eframe::egui;
 
 use super::preparation::Preparation;
@@ -14,6 +18,33 @@ pub struct Preparations {
     store: Store,
     always_anew: bool,
     each: Vec<(Asked, Preparation)>,
+}
+
+/// The graphics device makes what it looks up by itself.
+pub fn prepared_on_device(layers: &Layers) -> bool {
+    drawn_on_device(layers) && layers.first().method.info().id.0 == classical::ID
+}
+
+/// Its picture can show the light of one source.
+pub fn shows_sources(layers: &Layers) -> bool {
+    prepared_on_device(layers)
+}
+
+/// What lights the frames of a device, `classical` until all is prepared.
+pub fn lighting(layers: &Layers, preparations: &Preparations) -> Lighting {
+    let prepared = if prepared_on_device(layers) { None } else { preparations.prepared(layers) };
+    let first = prepared.and_then(|prepared| prepared.into_iter().next());
+    Lighting::new(layers.first().method.info().id, first)
+}
+
+/// The same for one picture: waits until it is prepared. `classical` where the processor draws.
+pub fn lighting_now(layers: &Layers, scene: &Arc<Scene>, store: &Store, job: &Handle) -> Result<Lighting, MethodError> {
+    if prepared_on_device(layers) || !drawn_on_device(layers) {
+        return Ok(Lighting::default());
+    }
+    let Layer { method, settings, .. } = layers.first();
+    let prepared = layers.prepare(store, &World::new(scene, Options::new(settings)), job)?;
+    Ok(Lighting::new(method.info().id, prepared.into_iter().next()))
 }
 
 /// The graphics device draws the scene: one method lights it, and has a pass there.
@@ -36,8 +67,7 @@ impl Preparations {
 
     /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
     pub fn follow(&mut self, layers: &Layers, scene: &Arc<Scene>, ctx: &egui::Context) {
-        if drawn_on_device(layers) {
-            // The device makes what it looks up.
+        if prepared_on_device(layers) {
             return self.forget();
         }
         let mut asked: Vec<Asked> = Vec::new();
@@ -84,6 +114,16 @@ impl Preparations {
         layers.iter().map(of).collect()
     }
 
+    /// Where what there is fails, for people.
+    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.each.iter().flat_map(|(_, preparation)| preparation.warnings())
+    }
+
+    /// Time of what the scene's method has in use, where it took some.
+    pub fn took(&self) -> Option<Duration> {
+        self.each.first().and_then(|(_, preparation)| preparation.cost()).map(|(_, took)| took)
+    }
+
     /// Another thread works on one.
     pub fn is_busy(&self) -> bool {
         self.each.iter().any(|(_, preparation)| preparation.is_busy())
@@ -98,10 +138,9 @@ impl Preparations {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use burnish_core::job::Handle;
-    use burnish_core::lighting::{Coverage, Method, MethodError, MethodId, MethodInfo, Reads, ShadePoint, classical};
+    use burnish_core::lighting::{Coverage, Method, MethodId, MethodInfo, Reads, ShadePoint};
     use burnish_core::param::{Affects, ParamKind, ParamSpec, Settings};
-    use burnish_core::reference::{self, SurfacePoint, World};
+    use burnish_core::reference::{self, SurfacePoint};
     use burnish_core::scene::{Environment, gallery};
     use glam::Vec3;
 

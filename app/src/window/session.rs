@@ -235,6 +235,7 @@ impl Session {
             && before.assignments == now.assignments
             && before.objects == now.objects
             && before.lights == now.lights
+            && before.probes == now.probes
             && before.presets == now.presets
             && before.lighting.method == now.lighting.method
             && before.lighting.settings == now.lighting.settings

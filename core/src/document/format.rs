@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value};
 
 use super::snapshot::{Snapshot, each_texture_path};
-use super::{CameraEntry, Document, EnvironmentEntry, MaterialEntry, ViewEntry, absolute, relative};
+use super::{CameraEntry, Document, EnvironmentEntry, MaterialEntry, ProbeEntry, ViewEntry, absolute, relative};
 use crate::file::{FileError, read_bounded, write_atomic};
 use crate::material::preset::Preset;
 
@@ -108,6 +108,7 @@ impl Document {
         let state = State {
             materials: &self.materials,
             presets: &self.presets,
+            probes: &self.probes,
             environment: &self.environment,
             view: &self.view,
         };
@@ -120,8 +121,8 @@ impl Document {
             if !names.insert(snapshot.name.as_str()) {
                 return Err(format!("two snapshots are called `{}`", snapshot.name));
             }
-            let Snapshot { materials, presets, environment, view, .. } = &**snapshot;
-            State { materials, presets, environment, view }.check(&format!("snapshots[{place}]."))?;
+            let Snapshot { materials, presets, probes, environment, view, .. } = &**snapshot;
+            State { materials, presets, probes, environment, view }.check(&format!("snapshots[{place}]."))?;
         }
         Ok(())
     }
@@ -145,6 +146,7 @@ impl Document {
 struct State<'a> {
     materials: &'a [Arc<MaterialEntry>],
     presets: &'a [Arc<Preset>],
+    probes: &'a [ProbeEntry],
     environment: &'a EnvironmentEntry,
     view: &'a ViewEntry,
 }
@@ -152,7 +154,7 @@ struct State<'a> {
 impl State<'_> {
     /// See [`Document::check`]; `place` is what its fields follow.
     fn check(&self, place: &str) -> Result<(), String> {
-        let State { materials, presets, environment, view } = self;
+        let State { materials, presets, probes, environment, view } = self;
         environment.check(place)?;
         let numbers = [("view.exposure_ev", view.exposure_ev, -64.0..=64.0)];
         for (field, value, range) in numbers {
@@ -166,6 +168,12 @@ impl State<'_> {
         for material in *materials {
             if !names.insert(material.name.as_str()) {
                 return Err(format!("two materials are called `{}`", material.name));
+            }
+        }
+        let mut names = BTreeSet::new();
+        for probe in *probes {
+            if !names.insert(probe.name.as_str()) {
+                return Err(format!("two probes are called `{}`", probe.name));
             }
         }
         for preset in *presets {

@@ -127,6 +127,22 @@ impl Document {
         }
     }
 
+    /// Puts probes for some objects, the subject where `serves` is empty, in these places instead of those that serve the same; returns
+    /// the name of the first.
+    pub fn place_probes(&mut self, serves: &[String], places: &[Vec3]) -> String {
+        let kept = self.probes.iter().find(|probe| probe.serves == serves).cloned().unwrap_or_default();
+        self.probes.retain(|probe| probe.serves != serves);
+        let mut first = None;
+        for place in places {
+            let name = self.free_probe_name("probe");
+            first.get_or_insert_with(|| name.clone());
+            let position = Some(place.to_array().map(f64::from));
+            // How the former ones were recorded stays.
+            self.probes.push(ProbeEntry { name, position, extent: None, serves: serves.into(), ..kept.clone() });
+        }
+        first.unwrap_or_default()
+    }
+
     /// Takes a probe away.
     pub fn remove_probe(&mut self, name: &str) {
         self.probes.retain(|probe| probe.name != name);
@@ -176,6 +192,11 @@ mod tests {
         assert_eq!(other.position, Some(Vec3::new(0.0, 0.0, 1e6)));
         document.remove_probe(&name);
         assert_eq!(document.probes.len(), 1);
+        document.probes[0].serves.clear();
+        let first = document.place_probes(&[], &[Vec3::X, Vec3::Y]);
+        assert_eq!(document.probes.len(), 2);
+        let probe = document.probe(&first).unwrap();
+        assert_eq!((probe.place(), probe.extent, probe.source()), (Some(Vec3::X), None, ProbeSource::Raster));
         document.probes[0].source = "painted".into();
         let notices = resolve(&document, &opened.sources, &mut Curves::default()).notices;
         assert!(notices.iter().any(|notice| notice.contains("painted")), "{notices:?}");

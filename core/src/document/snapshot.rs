@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{
-    Assignment, Document, EnvironmentEntry, LightEntry, LightingEntry, MaterialEntry, ObjectEntry, ProbeEntry, TextureChoice,
-    ViewEntry, edit::free,
+    Assignment, Document, EnvironmentEntry, LightEntry, LightingEntry, MaterialEntry, ObjectEntry, ProbeEntry,
+    TextureChoice, ViewEntry, edit::free,
 };
 use crate::lighting::classical;
 use crate::material::preset::Preset;

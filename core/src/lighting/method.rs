@@ -134,6 +134,22 @@ pub trait Method: Sync {
         Ok(Prepared::nothing())
     }
 
+    /// It has drafts.
+    fn drafts(&self) -> bool {
+        false
+    }
+
+    /// A coarse stand-in for what [`Method::prepare`] makes, in a part of a second: shown while something is dragged, until the whole
+    /// is there. `None` for methods that have none.
+    fn draft(&self, _world: &World, _settings: &Settings, _job: &Handle) -> Option<Result<Prepared, MethodError>> {
+        None
+    }
+
+    /// Where what was prepared fails for a scene, for people: each with what helps.
+    fn warnings(&self, _scene: &Scene, _prepared: &Prepared, _settings: &Settings) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The scene as [`Method::prepare`] sees it: what is left out here can be edited without another preparation.
     fn seen<'a>(&self, scene: &'a Scene, _settings: &Settings) -> Cow<'a, Scene> {
         Cow::Borrowed(scene)

@@ -68,6 +68,27 @@ fn cube_direction(face: u32, p: vec2f) -> vec3f {
 }
 
 // Solid angle of a small texel there over that of one in the face's middle.
+// The face that shows a direction of any length but 0 in x, the point of it in yz: the inverse of cube_direction.
+fn cube_face_point(d: vec3f) -> vec3f {
+    let a = abs(d);
+    if a.x >= a.y && a.x >= a.z {
+        if d.x >= 0.0 {
+            return vec3f(0.0, vec2f(-d.z, -d.y) / a.x);
+        }
+        return vec3f(1.0, vec2f(d.z, -d.y) / a.x);
+    }
+    if a.y >= a.z {
+        if d.y >= 0.0 {
+            return vec3f(2.0, vec2f(d.x, d.z) / a.y);
+        }
+        return vec3f(3.0, vec2f(d.x, -d.z) / a.y);
+    }
+    if d.z >= 0.0 {
+        return vec3f(4.0, vec2f(d.x, -d.y) / a.z);
+    }
+    return vec3f(5.0, vec2f(-d.x, -d.y) / a.z);
+}
+
 fn cube_weight(p: vec2f) -> f32 {
     return pow(1.0 + dot(p, p), -1.5);
 }

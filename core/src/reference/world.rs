@@ -184,6 +184,23 @@ impl World {
         self.closest(&ray, Sight::Light, 0).map(|hit| hit.t)
     }
 
+    /// Metres to the nearest surface in a direction, and whether it is met from behind, where its material has no back.
+    pub fn met_from_behind(&self, origin: Vec3, direction: Vec3) -> Option<(f32, bool)> {
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        self.closest(&ray, Sight::Light, 0).map(|hit| {
+            let behind = Triangle::new(self, &hit).normal().dot(direction) > 0.0;
+            (hit.t, behind && !self.instances[hit.instance as usize].two_sided)
+        })
+    }
+
+    /// The same past some instances, whose indices are in order.
+    pub fn distance_past(&self, origin: Vec3, direction: Vec3, instances: &[u32]) -> Option<f32> {
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let seen = |hit: &Hit| instances.binary_search(&hit.instance).is_err();
+        let hit = self.accel.closest(&ray, |hit| seen(hit) && self.is_there(&ray, hit, Sight::Light, 0));
+        hit.map(|hit| hit.t)
+    }
+
     /// The light of the scene.
     pub(super) fn lights(&self) -> &Lights {
         &self.lights

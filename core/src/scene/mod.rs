@@ -220,9 +220,8 @@ impl Scene {
     /// Box around what a picture is about: the visible instances of the subject, of all where that has none.
     pub fn subject_bounds(&self) -> Bounds {
         let visible = |index: &usize| self.instances.get(*index).is_some_and(|instance| instance.visible);
-        let around = |indices: &mut dyn Iterator<Item = usize>| {
-            self.bounds_of(&indices.filter(visible).collect::<Vec<_>>())
-        };
+        let around =
+            |indices: &mut dyn Iterator<Item = usize>| self.bounds_of(&indices.filter(visible).collect::<Vec<_>>());
         let subject = around(&mut self.subject.iter().copied());
         if subject.is_empty() { around(&mut (0..self.instances.len())) } else { subject }
     }

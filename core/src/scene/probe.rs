@@ -37,7 +37,7 @@ impl ProbeSource {
     pub const ALL: [ProbeSource; 2] = [ProbeSource::Traced, ProbeSource::Raster];
 
     /// Name in files.
-    pub fn id(self) -> &'static str {
+    pub const fn id(self) -> &'static str {
         match self {
             ProbeSource::Traced => "traced",
             ProbeSource::Raster => "raster",

@@ -107,6 +107,16 @@ impl Accel {
         self.walk(ray, |hit, _| hit.t < ray.t_max && accept(&hit))
     }
 
+    /// The nearest hit of each ray, on the caller's threads.
+    pub fn closest_of_each(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
+        rays.par_iter().map(|ray| self.closest(ray, |_| true)).collect()
+    }
+
+    /// For each ray whether there is a hit, on the caller's threads.
+    pub fn occluded_of_each(&self, rays: &[Ray]) -> Vec<bool> {
+        rays.par_iter().map(|ray| self.occluded(ray, |_| true)).collect()
+    }
+
     /// Memory of the trees.
     pub fn bytes(&self) -> usize {
         let Shared { trees, placed, nodes, .. } = &*self.shared;

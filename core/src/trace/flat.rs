@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat3, DVec3, Vec4};
+use glam::{DMat3, DVec3, Mat3, Vec4};
 
 use super::accel::Accel;
 use super::mesh_tree::MeshTree;
@@ -28,8 +28,9 @@ const COUNT_SHIFT: u32 = 29;
 ///   place of the first, an instance in the tree over instances or a triangle in that of a mesh.
 ///
 /// A leaf of the upper tree is traversed with the ray brought to the instance: its origin less
-/// [`FlatInstance::translation`], then origin and direction times [`FlatInstance::local_from_world`]. The direction is not
-/// made a unit vector, so distances stay those of the world.
+/// [`FlatInstance::translation`], then origin and direction times [`FlatInstance::local_from_world`] and what is left of it.
+/// The direction is not made a unit vector, so distances stay those of the world. [`Accel`] computes this in double
+/// precision; who uses less may find another triangle where two are near.
 ///
 /// Boxes hold their triangles exactly. A traversal that rounds must grow them: by [`Flat::slack`] in the upper tree and
 /// [`FlatInstance::slack`] in that of a mesh, times the distance of the ray's origin from the farthest corner of
@@ -72,7 +73,7 @@ impl FlatNode {
     }
 }
 
-/// A mesh in the world: 96 bytes.
+/// A mesh in the world: 144 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FlatInstance {
@@ -90,6 +91,8 @@ pub struct FlatInstance {
     pub max: [f32; 3],
     /// Share of a distance by which the boxes of the mesh are to be grown.
     pub slack: f32,
+    /// What single precision leaves of [`Self::local_from_world`].
+    pub local_from_world_left: [[f32; 4]; 3],
 }
 
 impl FlatInstance {
@@ -164,14 +167,17 @@ impl FlatInstance {
             Inverse::Affine { translation, linear } => (linear, translation),
         };
         let bounds = &placed.tree.bounds;
+        let columns = |matrix: Mat3| matrix.to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
+        let single = linear.as_mat3();
         FlatInstance {
-            local_from_world: linear.as_mat3().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]),
+            local_from_world: columns(single),
             translation: translation.as_vec3().into(),
             root,
             min: bounds.min.into(),
             instance: placed.index,
             max: bounds.max.into(),
             slack: SLACK,
+            local_from_world_left: columns((linear - single.as_dmat3()).as_mat3()),
         }
     }
 }

@@ -58,7 +58,11 @@ pub const STRUCTS: &[Struct] = &[
     TextureSlot::LAYOUT,
     MaterialData::LAYOUT,
     InstanceData::LAYOUT,
+    ProbeData::LAYOUT,
+    EffortData::LAYOUT,
     LightData::LAYOUT,
+    RayData::LAYOUT,
+    HitData::LAYOUT,
 ];
 
 /// Every shared constant with its value.
@@ -93,6 +97,10 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("CONTRIBUTION_EMISSION", CONTRIBUTION_EMISSION),
     ("CONTRIBUTION_LIGHT", CONTRIBUTION_LIGHT),
     ("SHADOW_NONE", SHADOW_NONE),
+    ("AREA_CUBE_FEW", AREA_CUBE_FEW),
+    ("AREA_CUBE_CORRECTED", AREA_CUBE_CORRECTED),
+    ("AREA_CUBE_NORMALIZED", AREA_CUBE_NORMALIZED),
+    ("HIT_NONE", HIT_NONE),
 ];
 
 /// Textures of a material, in the order of the `TEXTURE_` constants of `types.wgsl`.
@@ -133,6 +141,15 @@ pub const CONTRIBUTION_EMISSION: u32 = 2;
 pub const CONTRIBUTION_LIGHT: u32 = 3;
 /// `shadow_layer` of a light without a shadow map.
 pub const SHADOW_NONE: u32 = u32::MAX;
+/// Instance of a ray that meets nothing.
+pub const HIT_NONE: u32 = u32::MAX;
+
+/// Flag of [`EffortData`]: lobes look at few texels.
+pub const AREA_CUBE_FEW: u32 = 1;
+/// Flag of [`EffortData`]: minds the angles of surfaces.
+pub const AREA_CUBE_CORRECTED: u32 = 2;
+/// Flag of [`EffortData`]: even light comes out even.
+pub const AREA_CUBE_NORMALIZED: u32 = 4;
 
 shared! {
     /// What changes from frame to frame.
@@ -263,9 +280,43 @@ shared! {
         normal1: Vec4,
         normal2: Vec4,
         material: u32,
-        pad0: u32,
+        probes: u32,
         pad1: u32,
         pad2: u32,
+    }
+}
+
+shared! {
+    /// A probe, and what is known of its surroundings as a whole.
+    pub struct ProbeData {
+        middle: Vec3,
+        index: u32,
+        low: Vec3,
+        near: f32,
+        high: Vec3,
+        far: f32,
+        radius: f32,
+        scale: f32,
+        face: u32,
+        radiance_mips: f32,
+        prefiltered_mips: f32,
+        source_count: u32,
+        wide_alpha: f32,
+        pad0: u32,
+    }
+}
+
+shared! {
+    /// How the surroundings of a probe are looked up.
+    pub struct EffortData {
+        solver: u32,
+        refinements: u32,
+        steps: u32,
+        tolerance: f32,
+        show: u32,
+        edge: u32,
+        flags: u32,
+        pad0: u32,
     }
 }
 
@@ -287,5 +338,28 @@ shared! {
         shadow_depth: f32,
         pad0: u32,
         pad1: u32,
+    }
+}
+
+shared! {
+    /// A ray, as [`burnish_core::trace::Ray`].
+    pub struct RayData {
+        origin: Vec3,
+        t_max: f32,
+        direction: Vec3,
+        pad0: u32,
+    }
+}
+
+shared! {
+    /// What a ray meets, as [`burnish_core::trace::Hit`]; [`HIT_NONE`] for an instance where that is nothing.
+    pub struct HitData {
+        t: f32,
+        instance: u32,
+        triangle: u32,
+        pad0: u32,
+        barycentric: Vec2,
+        pad1: u32,
+        pad2: u32,
     }
 }

@@ -37,6 +37,8 @@ const CONTRIBUTION_EMISSION: u32 = 2u;
 const CONTRIBUTION_LIGHT: u32 = 3u;
 // A light without a shadow map has this first layer.
 const SHADOW_NONE: u32 = 0xffffffffu;
+// Instance of a ray that meets nothing.
+const HIT_NONE: u32 = 0xffffffffu;
 
 struct ViewData {
     clip_from_world: mat4x4f,
@@ -182,9 +184,45 @@ struct InstanceData {
     normal1: vec4f,
     normal2: vec4f,
     material: u32,
-    pad0: u32,
+    // A bit for each probe that serves it.
+    probes: u32,
     pad1: u32,
     pad2: u32,
+}
+
+// A probe, and what is known of its surroundings as a whole.
+struct ProbeData {
+    middle: vec3f,
+    index: u32,
+    low: vec3f,
+    near: f32,
+    high: vec3f,
+    far: f32,
+    radius: f32,
+    scale: f32,
+    face: u32,
+    radiance_mips: f32,
+    prefiltered_mips: f32,
+    source_count: u32,
+    wide_alpha: f32,
+    pad0: u32,
+}
+
+const AREA_CUBE_FEW: u32 = 1u;
+const AREA_CUBE_CORRECTED: u32 = 2u;
+const AREA_CUBE_NORMALIZED: u32 = 4u;
+
+// How the surroundings of a probe are looked up.
+struct EffortData {
+    solver: u32,
+    refinements: u32,
+    steps: u32,
+    tolerance: f32,
+    show: u32,
+    // Of the method area-cube: texels along an edge, and AREA_CUBE_ flags.
+    edge: u32,
+    flags: u32,
+    pad0: u32,
 }
 
 struct LightData {
@@ -212,4 +250,26 @@ struct LightData {
     shadow_depth: f32,
     pad0: u32,
     pad1: u32,
+}
+
+// Points origin + t direction with 0 <= t < t_max.
+struct RayData {
+    origin: vec3f,
+    t_max: f32,
+    direction: vec3f,
+    pad0: u32,
+}
+
+struct HitData {
+    // Along the ray.
+    t: f32,
+    // Index into the scene, or HIT_NONE.
+    instance: u32,
+    // Place in its mesh.
+    triangle: u32,
+    pad0: u32,
+    // Weights of the second and third corner.
+    barycentric: vec2f,
+    pad1: u32,
+    pad2: u32,
 }

@@ -7,6 +7,7 @@ pub mod display;
 pub mod environment;
 pub mod forward;
 pub mod gbuffer;
+pub mod impostor;
 pub mod shadow;
 
 use std::sync::OnceLock;
@@ -94,7 +95,7 @@ pub(crate) fn fullscreen_pipeline(
     label: &str,
     layouts: &[Option<&wgpu::BindGroupLayout>],
     module: &wgpu::ShaderModule,
-    format: wgpu::TextureFormat,
+    target: impl Into<wgpu::ColorTargetState>,
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -118,7 +119,7 @@ pub(crate) fn fullscreen_pipeline(
             module,
             entry_point: Some("fragment"),
             compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-            targets: &[Some(format.into())],
+            targets: &[Some(target.into())],
         }),
         multiview_mask: None,
         cache: None,

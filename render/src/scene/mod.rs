@@ -13,6 +13,7 @@ use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::layout::types::{InstanceData, MaterialData};
 use crate::pass::MeshPipelines;
+use crate::probes::Lighting;
 use crate::tables::Tables;
 
 pub use geometry::{Geometry, VERTEX_ATTRIBUTES, VERTEX_STRIDE};
@@ -96,9 +97,10 @@ impl GpuScene {
         groups: &mut MaterialGroups,
         scene: &Scene,
         tables: &Tables,
+        lighting: &Lighting,
         before: Option<&GpuScene>,
     ) -> Result<GpuScene, RenderError> {
-        let instances = instance_list(scene);
+        let instances = instance_list(scene, lighting);
         check_size(gpu, "instances", size_of_val(instances.as_slice()) as u64)?;
         let materials: Vec<MaterialData> = material::material_list(scene, tables);
         check_size(gpu, "materials", size_of_val(materials.as_slice()) as u64)?;
@@ -140,16 +142,20 @@ fn draw_list(scene: &Scene, geometry: &Geometry) -> Vec<Draw> {
 }
 
 /// Every instance, the hidden ones too: draws name them by their index. Never empty.
-fn instance_list(scene: &Scene) -> Vec<InstanceData> {
-    let data = |i: &burnish_core::scene::Instance| instance_data(i.world_from_local.into(), i.material);
-    let mut instances: Vec<_> = scene.instances.iter().map(data).collect();
+fn instance_list(scene: &Scene, lighting: &Lighting) -> Vec<InstanceData> {
+    let data = |(index, i): (usize, &burnish_core::scene::Instance)| InstanceData {
+        probes: lighting.serving(index as u32),
+        ..instance_data(i.world_from_local.into(), i.material)
+    };
+    let mut instances: Vec<_> = scene.instances.iter().enumerate().map(data).collect();
     if instances.is_empty() {
         instances.push(instance_data(Mat4::IDENTITY, 0));
     }
     instances
 }
 
-fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), RenderError> {
+/// Fails where a storage buffer of so many bytes cannot be bound.
+pub(crate) fn check_size(gpu: &Gpu, what: &str, bytes: u64) -> Result<(), RenderError> {
     let limits = gpu.device.limits();
     let allowed = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
     if bytes > allowed {
@@ -170,7 +176,7 @@ fn instance_data(world_from_local: Mat4, material: usize) -> InstanceData {
         normal1: (sign * z.cross(x)).extend(0.0),
         normal2: (sign * x.cross(y)).extend(0.0),
         material: material as u32,
-        pad0: 0,
+        probes: 0,
         pad1: 0,
         pad2: 0,
     }

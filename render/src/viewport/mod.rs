@@ -23,6 +23,7 @@ use crate::pass::display::{self, Display};
 use crate::pass::environment::{Progress, Refinement};
 use crate::pass::target;
 use crate::passes::Passes;
+use crate::probes::{Lighting, ProbeLook};
 use crate::readback::{Reading, read_texel};
 use crate::renderer::check_size;
 use crate::resident::{Loader, Quality, Resident};
@@ -38,8 +39,10 @@ pub struct Frame {
     pub size: UVec2,
     /// From where.
     pub camera: Camera,
-    /// Settings of the `classical` method.
+    /// Settings of the method.
     pub settings: Settings,
+    /// The method, with what it prepared.
+    pub lighting: Lighting,
     /// Display transform.
     pub tone: ToneMap,
     /// Exposure in stops.
@@ -101,6 +104,7 @@ struct Key {
     world_from_view: Affine3A,
     projection: Projection,
     settings: FrameSettings,
+    look: ProbeLook,
 }
 
 /// A scene on a screen.
@@ -120,6 +124,7 @@ pub struct Viewport {
     preparing: Option<(Refinement, f32)>,
     last: Option<(Key, Camera)>,
     display: Option<Display>,
+    lighting: Lighting,
 }
 
 impl Viewport {
@@ -142,6 +147,7 @@ impl Viewport {
             preparing: None,
             last: None,
             display: None,
+            lighting: Lighting::default(),
         }
     }
 
@@ -157,11 +163,11 @@ impl Viewport {
     }
 
     fn load(&mut self, scene: &Arc<Scene>, masking: Masking) -> Result<(), RenderError> {
-        if self.resident.as_ref().is_some_and(|old| Arc::ptr_eq(&old.scene, scene) && old.masking == masking) {
+        if self.resident.as_ref().is_some_and(|old| old.is_of(scene, masking, &self.lighting)) {
             return Ok(());
         }
         let old = self.resident.as_ref();
-        let resident = self.loader.load(scene, masking, old)?;
+        let resident = self.loader.load(scene, masking, &self.lighting, old)?;
         if old.is_none_or(|old| !Arc::ptr_eq(&old.maps, &resident.maps)) {
             let coarse = resident.scene.environment.as_ref().filter(|_| resident.quality == Quality::Coarse);
             self.preparing = coarse.map(|environment| (Refinement::new(environment), 0.0));
@@ -182,24 +188,35 @@ impl Viewport {
         let Some(resident) = &self.resident else {
             return Ok(Drawn { settled: true, ..Drawn::default() });
         };
-        if resident.masking != settings.masking {
+        if resident.masking != settings.masking || !self.lighting.is_like(&frame.lighting) {
             let scene = resident.scene.clone();
-            self.load(&scene, settings.masking)?;
+            let (before, was_stale) = (std::mem::replace(&mut self.lighting, frame.lighting.clone()), self.stale);
+            if let Err(error) = self.load(&scene, settings.masking) {
+                self.lighting = before;
+                return Err(error);
+            }
+            if let (Shown::Still, Some((_, still))) = (self.shown, &mut self.full) {
+                // Something was prepared anew: the picture stays until there is a better one as large.
+                still.restart();
+                self.stale = was_stale;
+            }
         }
+        let look = ProbeLook::new(&frame.settings);
         let key = Key {
             size: frame.size,
             world_from_view: frame.camera.world_from_view,
             projection: frame.camera.projection,
             settings,
+            look,
         };
         let before = (self.shown, self.frames());
         let changed = self.stale || self.last.as_ref().is_none_or(|(last, _)| *last != key);
         if changed {
-            self.draw_quick(&passes, frame, &settings)?;
+            self.draw_quick(&passes, frame, (&settings, &look))?;
             self.last = Some((key, frame.camera.clone()));
             self.stale = false;
         } else if !frame.moving {
-            self.refine(&passes, &frame.camera, &settings)?;
+            self.refine(&passes, &frame.camera, (&settings, &look))?;
         }
         if !gpu.is_software() {
             self.prepare(&passes)?;
@@ -247,7 +264,12 @@ impl Viewport {
     }
 
     /// One frame as large as there is time for.
-    fn draw_quick(&mut self, passes: &Passes, frame: &Frame, settings: &FrameSettings) -> Result<(), RenderError> {
+    fn draw_quick(
+        &mut self,
+        passes: &Passes,
+        frame: &Frame,
+        (settings, look): (&FrameSettings, &ProbeLook),
+    ) -> Result<(), RenderError> {
         let Some(resident) = &self.resident else { return Ok(()) };
         if self.full.as_ref().is_some_and(|(canvas, _)| canvas.targets.size != frame.size) {
             self.full = None;
@@ -264,7 +286,7 @@ impl Viewport {
         };
         let settings = FrameSettings { samples: self.pace.moving_samples(settings.samples), ..*settings };
         let jitter = Jitter { frame: 0, frames: 1 };
-        let encoding = Encoding::new(passes, resident, &frame.camera, size, &settings, jitter);
+        let encoding = Encoding::new(passes, resident, &frame.camera, size, (&settings, look), jitter);
         let targets = &canvas.targets;
         let surfaces = timed(&passes.gpu, |encoder| encoding.surfaces(passes, encoder, resident, targets))?;
         let rest = timed(&passes.gpu, |encoder| {
@@ -280,7 +302,12 @@ impl Viewport {
     }
 
     /// A part of the sharp picture, or of what it needs. One whole frame comes first: it is sharp, if not yet right.
-    fn refine(&mut self, passes: &Passes, camera: &Camera, settings: &FrameSettings) -> Result<(), RenderError> {
+    fn refine(
+        &mut self,
+        passes: &Passes,
+        camera: &Camera,
+        settings: (&FrameSettings, &ProbeLook),
+    ) -> Result<(), RenderError> {
         let Some((key, _)) = &self.last else { return Ok(()) };
         let size = key.size;
         let begun = self.full.get_or_insert_with(|| full_canvas(passes, size)).1.begun();
@@ -316,7 +343,7 @@ impl Viewport {
                 if let Some(environment) = &old.scene.environment {
                     self.loader.refined(environment, *maps);
                 }
-                self.resident = Some(self.loader.load(&old.scene, old.masking, Some(old))?);
+                self.resident = Some(self.loader.load(&old.scene, old.masking, &self.lighting, Some(old))?);
                 // The picture on the screen stays until there is a better one as large.
                 if let Some((_, still)) = &mut self.full {
                     still.restart();

@@ -9,6 +9,7 @@ use crate::error::RenderError;
 use crate::frame::{Encoding, Jitter};
 use crate::pass::accumulate::Sums;
 use crate::passes::Passes;
+use crate::probes::ProbeLook;
 use crate::resident::Resident;
 
 /// Frames that are averaged. The picture is settled after them.
@@ -63,7 +64,7 @@ impl Still {
         passes: &Passes,
         resident: &Resident,
         canvas: &Canvas,
-        (camera, settings): (&Camera, &FrameSettings),
+        (camera, settings): (&Camera, (&FrameSettings, &ProbeLook)),
         pace: &mut Pace,
     ) -> Result<(), RenderError> {
         let (gpu, targets) = (&passes.gpu, &canvas.targets);

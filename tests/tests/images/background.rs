@@ -8,7 +8,7 @@ use burnish_tests::{Need, trial};
 use glam::Vec3;
 use libtest_mimic::Trial;
 
-use crate::processor::{assert_same, sky};
+use crate::processor::{assert_classical_same, sky};
 
 /// Kinds of backgrounds by name.
 type Kind = (&'static str, fn(&Environment) -> Background);
@@ -25,7 +25,7 @@ const GROUND: Ground = Ground { middle: Vec3::new(0.3, -1.0, 0.2), height: 1.6, 
 pub fn trials() -> Vec<Trial> {
     let each = KINDS.into_iter().map(|(name, make)| {
         let name = format!("a background is the same on device and processor: {name}");
-        trial(name.leak(), &[Need::Gpu], move || assert_same(scene(make), "0"))
+        trial(name.leak(), &[Need::Gpu], move || assert_classical_same(scene(make), "0"))
     });
     each.collect()
 }

@@ -32,6 +32,7 @@ fn setup() -> (Offscreen, Arc<Scene>, Frame) {
         size,
         camera,
         settings,
+        lighting: Default::default(),
         tone,
         exposure_ev: 0.0,
         mode: Default::default(),

@@ -101,6 +101,7 @@ fn frame(scene: &Scene) -> Frame {
         size: SIZE,
         camera,
         settings,
+        lighting: Default::default(),
         tone: TONE,
         exposure_ev: EXPOSURE,
         mode: Default::default(),

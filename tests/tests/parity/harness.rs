@@ -14,7 +14,7 @@ use crate::curves::{self, Curves};
 const EXTERNS: &str = include_str!("externs.wgsl");
 
 /// Opened once: a software adapter takes its time.
-static GPU: LazyLock<Gpu> = LazyLock::new(|| Gpu::new().unwrap_or_else(|e| panic!("{e}")));
+pub static GPU: LazyLock<Gpu> = LazyLock::new(|| Gpu::new().unwrap_or_else(|e| panic!("{e}")));
 
 /// How far the two languages may be apart: the larger of both counts.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Every WGSL leaf equals its Rust twin on the GPU, over a grid with its limits.
 //!
 //! One file per leaf holds its cases. A leaf without a case fails, and so does a function of a leaf that no case
-//! reaches.
+//! reaches. `trace` compares rays, which are no leaf.
 
 mod area;
 mod area_cube;
@@ -20,8 +20,10 @@ mod lambert;
 mod layered;
 mod math;
 mod micro_normal;
+mod probe;
 mod surface;
 mod tone;
+mod trace;
 mod view;
 
 use std::collections::BTreeSet;
@@ -39,6 +41,7 @@ fn main() {
         cases().into_iter().map(|case| trial(case.name, &[Need::Gpu], move || case.run())).collect();
     trials.push(trial("every function of every leaf is compared", &[], every_function_is_compared));
     trials.push(trial("differences over the tolerance are faults", &[], harness::differences_are_faults));
+    trials.extend(trace::trials());
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -60,6 +63,7 @@ fn cases() -> Vec<Case> {
     cases.extend(area_cube::cases());
     cases.extend(classical::cases());
     cases.extend(impostor::cases());
+    cases.extend(probe::cases());
     cases
 }
 

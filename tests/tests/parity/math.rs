@@ -34,6 +34,8 @@ pub fn cases() -> Vec<Case> {
 const CUBE: &str = "
     let face = u32(x[0].z);
     y[0] = vec4f(cube_direction(face, x[0].xy), cube_weight(x[0].xy));
+    // Off the edges, which belong to two faces.
+    y[1] = vec4f(cube_face_point(2.5 * cube_direction(face, 0.98 * x[0].xy)), 0.0);
 ";
 
 fn face_points() -> Vec<[Vec4; 1]> {
@@ -42,9 +44,11 @@ fn face_points() -> Vec<[Vec4; 1]> {
     points.flat_map(|p| (0..6).map(move |face| [Vec4::new(p.x, p.y, face as f32, 0.0)])).collect()
 }
 
-fn cube_map(x: &[Vec4; 1]) -> [Vec4; 1] {
+fn cube_map(x: &[Vec4; 1]) -> [Vec4; 2] {
     let p = x[0].truncate().truncate();
-    [v4(cube::direction(x[0].z as u32, p), cube::weight(p))]
+    let face = x[0].z as u32;
+    let (found, at) = cube::face_point(2.5 * cube::direction(face, 0.98 * p));
+    [v4(cube::direction(face, p), cube::weight(p)), Vec4::new(found as f32, at.x, at.y, 0.0)]
 }
 
 /// Around as a direction: the left edge of the map is its right edge.

@@ -11,6 +11,7 @@ mod import;
 mod lights;
 mod looks;
 mod monkey;
+mod probes;
 mod reference;
 mod snapshot;
 mod workflow;
@@ -23,6 +24,7 @@ fn main() {
         import::trials(),
         environment::trials(),
         lights::trials(),
+        probes::trials(),
         looks::trials(),
         compare::trials(),
         chart::trials(),

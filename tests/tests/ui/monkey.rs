@@ -17,7 +17,7 @@ const SIZE: [f32; 2] = [1100.0, 720.0];
 /// Seeds in the suite; `BURNISH_SEEDS` asks for more.
 const SEEDS: u64 = 3;
 /// What would leave the test: other documents, files elsewhere, dialogs of the system, minutes of measuring.
-const LEFT_ALONE: [&str; 17] = [
+const LEFT_ALONE: [&str; 18] = [
     "Default workbench",
     "Open",
     "Open...",
@@ -35,6 +35,7 @@ const LEFT_ALONE: [&str; 17] = [
     "Save preset",
     "Delete preset",
     "Measure",
+    "Place automatically",
 ];
 const COMMANDS_LEFT_ALONE: [Command; 7] = [
     Command::Start,

@@ -1,19 +1,23 @@
-//! Pictures by the classical method, on the GPU.
+//! Pictures by methods that the graphics device draws.
 
 use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::document::Document;
 use burnish_core::file::write_picture;
-use burnish_core::lighting::classical;
+use burnish_core::job::Handle;
+use burnish_core::lighting::{Layers, Method, classical};
 use burnish_core::param::Settings;
 use burnish_render::{Gpu, Renderer, View};
 use glam::UVec2;
 
-use super::{Output, assign, tell};
+use super::{Output, assign, store, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure, printable};
 use crate::source::Opened;
+use crate::window::lighting_now;
 
 /// Frames that are averaged when nothing is said.
 const FRAMES: u32 = 16;
@@ -34,7 +38,8 @@ impl ClassicalArgs {
 }
 
 pub fn run(
-    args: &ClassicalArgs,
+    method: &'static dyn Method,
+    (args, cache): (&ClassicalArgs, Option<&Path>),
     (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
@@ -42,9 +47,10 @@ pub fn run(
     err: &mut dyn Write,
 ) -> Result<Exit, Failure> {
     // Settings of another live method are none of this one.
-    let is_live = |document: &&Document| document.lighting.live_method().info().id.0 == classical::ID;
+    let id = method.info().id;
+    let is_live = |document: &&Document| document.lighting.live_method().info().id == id;
     let document = opened.document.as_ref().filter(is_live);
-    let mut settings = document.map_or_else(|| Settings::new(classical::PARAMS), |d| d.lighting.settings());
+    let mut settings = document.map_or_else(|| Settings::new(method.info().params), |d| d.lighting.settings());
     assign(&mut settings, set)?;
     let choice = classical::form_choice(&settings);
     let Staged { scene, camera, size, notices, document, .. } = stage.set(opened, choice, Forms::OfMaterials)?;
@@ -53,8 +59,15 @@ pub fn run(
     let start = Instant::now();
     let gpu = Gpu::new().map_err(|e| Failure::resources(format!("{e}; or draw on the processor with --processor")))?;
     let frames = args.spp_jitter.unwrap_or(FRAMES);
+    let scene = Arc::new(scene);
+    let layers = Layers::of(method, settings.clone());
+    let lighting = lighting_now(&layers, &scene, &store(cache), &Handle::default()).map_err(Failure::resources)?;
+    if let Some(prepared) = lighting.prepared() {
+        tell(err, &method.warnings(&scene, prepared, &settings))?;
+    }
     let view = View { size, camera, settings, jitter_frames: frames };
     let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    renderer.light_by(&lighting).map_err(Failure::resources)?;
     for name in renderer.unshadowed_lights() {
         writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
     }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::ViewEntry;
 use burnish_core::file::PictureFormat;
-use burnish_core::lighting::{self, Layers, Method};
+use burnish_core::lighting::{self, Layers, Method, Store};
 use burnish_core::param::{ParamSpec, Settings};
 use glam::UVec2;
 
@@ -22,6 +22,7 @@ use super::stage::{self, StageArgs};
 use crate::failure::{Exit, Failure, printable};
 use crate::source::Opened;
 use crate::value::{self, MethodChoice};
+use crate::window::Folders;
 
 const REFERENCE: &str = burnish_core::reference::ID;
 
@@ -32,7 +33,7 @@ pub struct Args {
     stage: StageArgs,
     #[command(flatten)]
     output: Output,
-    /// How light is computed: classical, by lookups on the GPU; reference, by paths on the processor; see `burnish methods`
+    /// How light is computed: classical and impostor, by lookups on the GPU; reference, by paths on the processor; see `burnish methods`
     /// [default: as the document says, its objects that are lit otherwise included, else classical]
     #[arg(long, value_name = "METHOD", value_parser = value::method)]
     method: Option<MethodChoice>,
@@ -45,7 +46,7 @@ pub struct Args {
     /// Folder of what methods prepare [default: the user's cache]
     #[arg(long, value_name = "FOLDER")]
     cache: Option<PathBuf>,
-    #[command(flatten, next_help_heading = "With --method classical")]
+    #[command(flatten, next_help_heading = "On the graphics device")]
     classical: ClassicalArgs,
     #[command(flatten, next_help_heading = "With --method reference")]
     reference: ReferenceArgs,
@@ -81,12 +82,12 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         }
     };
     let id = layers.first().method.info().id.0;
-    let on_device = id == lighting::classical::ID && layers.is_single() && !processor;
+    let on_device = burnish_render::draws(layers.first().method.info().id) && layers.is_single() && !processor;
     let (foreign, other) = match on_device {
         true => (reference.given(), REFERENCE),
         false => (classical.given(), lighting::classical::ID),
     };
-    if let (Some(option), true) = (foreign, id == lighting::classical::ID && !on_device) {
+    if let (Some(option), true) = (foreign, id != REFERENCE && !on_device) {
         return Err(Failure::usage(format!(
             "{option} is for pictures of the graphics device; leave it out, or give --samples for this one"
         )));
@@ -101,7 +102,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         None => (&stage, stage.open()?),
     };
     match id {
-        _ if on_device => classical::run(&classical, scene, &set, &output, out, err),
+        _ if on_device => {
+            classical::run(layers.first().method, (&classical, cache.as_deref()), scene, &set, &output, out, err)
+        }
         REFERENCE => reference::run(&reference, scene, &set, &output, out, err),
         _ => points::run(layers, (&reference, cache.as_deref()), scene, &set, &output, out, err),
     }
@@ -153,8 +156,14 @@ fn check_folder(option: &str, file: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Where preparations are kept: in a folder that was named, else in the user's cache.
+fn store(cache: Option<&Path>) -> Store {
+    let folder = cache.map(Path::to_path_buf).or_else(|| Some(Folders::of_user()?.prepared()));
+    folder.map_or_else(Store::none, |folder| Store::within(&folder))
+}
+
 /// Applies `--set`.
-fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), Failure> {
+pub fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), Failure> {
     for (key, text) in list {
         settings.set(key, text).map_err(|e| Failure::usage(format!("--set {key}={text}: {e}")))?;
     }

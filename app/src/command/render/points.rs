@@ -10,18 +10,17 @@ use burnish_core::document::{Document, LightingEntry, SHARED_SETTINGS};
 use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::classical::form_choice;
-use burnish_core::lighting::{Layers, MethodError, MethodId, Store};
+use burnish_core::lighting::{Layers, MethodError, MethodId};
 use burnish_core::param::Settings;
 use burnish_core::reference::{Film, Options, Pass, View, World};
 use glam::UVec2;
 
 use super::reference::ReferenceArgs;
-use super::{Output, assign, tell};
+use super::{Output, assign, store, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::source::Opened;
-use crate::window::Folders;
 
 /// Samples where no number is given.
 const SAMPLES: u32 = 16;
@@ -50,8 +49,7 @@ pub fn run(
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let job = Handle::default();
     let view = View { camera, size, seed };
-    let folder = cache.map(Path::to_path_buf).or_else(|| Some(Folders::of_user()?.prepared()));
-    let store = folder.map_or_else(Store::none, |folder| Store::within(&folder));
+    let store = store(cache);
     let pool = args.pool()?;
     let (mut film, samples) = (Film::new(size), samples.unwrap_or(SAMPLES));
     let cancel = || {

@@ -15,7 +15,7 @@ use eframe::egui;
 use glam::UVec2;
 
 use super::load::name_of;
-use crate::window::preparations::drawn_on_device;
+use crate::window::preparations::{drawn_on_device, lighting_now};
 use crate::window::reference::Look;
 use crate::window::session::Session;
 
@@ -176,6 +176,8 @@ fn render(
             None => Arc::new(Passes::new(&Gpu::new().map_err(|e| e.to_string())?)),
         };
         let mut renderer = Renderer::with_passes(&passes, &scene).map_err(|e| e.to_string())?;
+        let lighting = lighting_now(&layers, &scene, &store, handle).map_err(|e| e.to_string())?;
+        renderer.light_by(&lighting).map_err(|e| e.to_string())?;
         renderer.show(contribution);
         let going_on = |fraction: f32| {
             handle.set_progress(fraction);

@@ -26,7 +26,9 @@ impl StatusLine {
                 Some(look) => [vec![refined(look)], traced(look)].concat(),
                 None => status.map(picture).unwrap_or_default(),
             };
-            for (text, hover) in items {
+            let took = context.preparations.took().filter(|_| status.is_some_and(|status| !status.fixed_clock));
+            let took = took.map(|took| (format!("prepared in {:.0} ms", took.as_secs_f64() * 1e3), PREPARED_HELP));
+            for (text, hover) in items.into_iter().chain(took) {
                 item_ui(ui, &text, hover);
             }
             item_ui(ui, &triangles(context.session.scene()), "Triangles of the visible objects.");
@@ -42,11 +44,15 @@ impl StatusLine {
                 let kind = if software { "Software rasterizer" } else { "Graphics adapter" };
                 let label = egui::Label::new(RichText::new(adapter).small()).truncate();
                 ui.add(label).on_hover_text(format!("{kind} that draws the picture: {adapter}"));
-                notices_ui(ui, &notices(context.session, status));
+                let warnings = context.preparations.warnings().cloned();
+                notices_ui(ui, &notices(context.session, status).into_iter().chain(warnings).collect::<Vec<_>>());
             });
         });
     }
 }
+
+const PREPARED_HELP: &str =
+    "Time of what the method looks up: of the draft while something is dragged, of the whole when it rests.";
 
 const FILLED_HELP: &str =
     "The lighting method, and by what each part of the light is computed. `nothing` is left black.";

@@ -9,7 +9,7 @@ use super::{Asked, EDGES, Looked, NUMBERS, Texel, Texels, downsample, reflected}
 use crate::job::Handle;
 use crate::lighting::classical::{self, Maps, PreparedMaps};
 use crate::lighting::impostor::{self, Effort, Solver};
-use crate::lighting::probe::{self, Probe, Probes};
+use crate::lighting::probe::{self, Probe, Probes, Sites};
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use crate::math::frame::Frame;
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
@@ -92,7 +92,7 @@ static INFO: MethodInfo = MethodInfo {
 };
 
 /// The array of a probe that holds its coarse cubes, those of all [`EDGES`].
-const ARRAY: &str = "area-cube";
+pub const ARRAY: &str = "area-cube";
 /// Most parts along an edge into which a texel is cut to take its means.
 const PARTS_MAX: u32 = 64;
 
@@ -102,10 +102,19 @@ impl Method for AreaCube {
     }
 
     fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
-        let recorded = probe::prepare(world, &impostor::sites(world.scene(), settings), job)?;
-        let coarse = Probes::of(&recorded).iter().map(|probe| coarse(&probe)).collect::<Vec<_>>();
-        let parts = recorded.parts().iter().cloned().zip(coarse);
-        Ok(Prepared::nothing().with_parts(parts.map(|(part, numbers)| part.with(ARRAY, numbers)).collect()))
+        record(world, &impostor::sites(world.scene(), settings), job)
+    }
+
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Option<Result<Prepared, MethodError>> {
+        Some(record(world, &impostor::sites(world.scene(), settings).coarse(), job))
+    }
+
+    fn warnings(&self, scene: &Scene, prepared: &Prepared, settings: &Settings) -> Vec<String> {
+        probe::warnings(scene, &impostor::sites(scene, settings), prepared)
     }
 
     fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
@@ -115,6 +124,14 @@ impl Method for AreaCube {
     fn points(&self) -> Option<&dyn ShadePoint> {
         Some(self)
     }
+}
+
+/// The probes with their coarse cubes.
+fn record(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, MethodError> {
+    let recorded = probe::prepare(world, sites, job)?;
+    let coarse = Probes::of(&recorded).iter().map(|probe| coarse(&probe)).collect::<Vec<_>>();
+    let parts = recorded.parts().iter().cloned().zip(coarse);
+    Ok(Prepared::nothing().with_parts(parts.map(|(part, numbers)| part.with(ARRAY, numbers)).collect()))
 }
 
 /// The coarse cubes of a probe, one after the other.
@@ -134,7 +151,7 @@ fn coarse(probe: &Probe<'_>) -> Vec<f32> {
 }
 
 /// Texels along an edge of a face, from settings made of [`PARAMS`].
-fn edge(settings: &Settings) -> u32 {
+pub fn edge(settings: &Settings) -> u32 {
     match settings.get(TEXELS.key) {
         Some(ParamValue::Choice(index)) => EDGES.get(index).copied().unwrap_or(EDGES[1]),
         _ => EDGES[1],
@@ -142,7 +159,7 @@ fn edge(settings: &Settings) -> u32 {
 }
 
 /// What is asked of them, likewise.
-fn asked(settings: &Settings) -> Asked {
+pub fn asked(settings: &Settings) -> Asked {
     let is_off = |spec: &ParamSpec| settings.text(spec.key).as_deref() == Some("off");
     Asked {
         few: settings.text(SUM.key).as_deref() == Some("few"),

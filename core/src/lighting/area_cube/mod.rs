@@ -22,7 +22,7 @@ use crate::lighting::classical;
 
 pub use few::{NEIGHBOURS, neighbour, texel_at};
 pub use gather::{Asked, Gathered, HORIZON, LEAST, Lobe, Looked, glossy, reflected, sums};
-pub use method::{AreaCube, ID, PARAMS};
+pub use method::{ARRAY, AreaCube, ID, PARAMS, asked, edge};
 pub use texels::{COS_MIN, EDGES, NUMBERS, Texel, Texels, downsample, solid_angle};
 
 /// The WGSL twin. The pass supplies `area_cube_entry`, the numbers of [`tables::flat`], and `area_cube_texel`, the numbers of a

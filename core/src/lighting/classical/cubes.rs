@@ -194,6 +194,22 @@ impl<'a> PreparedMaps<'a> {
         })
     }
 
+    /// Its cubes: radiance, dimmed, prefiltered, irradiance, all over the scale.
+    pub fn cubes(&self) -> [&CubeMap<'a>; 4] {
+        [&self.radiance, &self.dimmed, &self.prefiltered, &self.irradiance]
+    }
+
+    /// Factor from a texel of unturned cubes to radiance.
+    pub fn scale(&self) -> f32 {
+        self.scale.x
+    }
+
+    /// The sources in the map's own frame, over the scale.
+    pub fn stored_sources(&self) -> impl Iterator<Item = Source> + use<'a> {
+        let (six, _) = self.sources.as_chunks::<6>();
+        six.iter().map(|[x, y, z, r, g, b]| Source { direction: Vec3::new(*x, *y, *z), power: Vec3::new(*r, *g, *b) })
+    }
+
     fn lookup(&self, map: &CubeMap<'_>, direction: Vec3, level: f32) -> Vec3 {
         self.scale * map.lookup(mirrored(self.turn.to_own(direction)), level)
     }

@@ -264,3 +264,33 @@ fn impostor_direction(found: ImpostorFound, x: vec3f, r: vec3f) -> vec3f {
 fn impostor_level(level: f32, t: f32, distance: f32, last: f32) -> f32 {
     return clamp(level + log2(max(t, 1e-6) / max(distance, 1e-6)), 0.0, last);
 }
+
+const IMPOSTOR_SHOW_LIGHT: u32 = 0u;
+const IMPOSTOR_SHOW_LOOKUPS: u32 = 1u;
+const IMPOSTOR_SHOW_RATIO: u32 = 2u;
+const IMPOSTOR_SHOW_ERROR: u32 = 3u;
+const IMPOSTOR_MOST_LOOKUPS: f32 = 32.0;
+const IMPOSTOR_MOST_RATIO: f32 = 0.1;
+
+// A scale from blue over green to red, x from 0 to 1.
+fn impostor_heat(x: f32) -> vec3f {
+    let at = 4.0 * clamp(x, 0.0, 1.0);
+    return clamp(1.5 - abs(at - vec3f(3.0, 2.0, 1.0)), vec3f(0.0), vec3f(1.0));
+}
+
+// The colour of a search by its lookups or where it ended.
+fn impostor_shown(found: ImpostorFound, show: u32) -> vec3f {
+    if show == IMPOSTOR_SHOW_LOOKUPS {
+        return impostor_heat(f32(found.lookups) / IMPOSTOR_MOST_LOOKUPS);
+    }
+    if show == IMPOSTOR_SHOW_RATIO {
+        let off = clamp((found.ratio - 1.0) / IMPOSTOR_MOST_RATIO, -1.0, 1.0);
+        return vec3f(max(off, 0.0), select(1.0, 0.0, found.is_hit), max(-off, 0.0));
+    }
+    return vec3f(0.0);
+}
+
+// The colour of an error in direction, degrees.
+fn impostor_error_shown(degrees: f32) -> vec3f {
+    return impostor_heat((log2(max(degrees, 1e-9)) / log2(10.0) + 2.0) / 4.0);
+}

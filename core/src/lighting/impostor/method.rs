@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use glam::{Vec2, Vec3};
 
-use super::{Effort, Found, Solver, level, solve};
+use super::{Effort, Found, Show, Solver, error_shown, level, shown, solve};
 use crate::job::Handle;
 use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
 use crate::lighting::probe::{self, Defaults, Probe, Probes, Sites};
@@ -59,6 +59,16 @@ const TOLERANCE: ParamSpec = ParamSpec {
     affects: Affects::Frame,
 };
 
+const SHOW: ParamSpec = ParamSpec {
+    key: "show",
+    label: "Show",
+    unit: "",
+    kind: ParamKind::Choice { options: &Show::IDS, default: 0 },
+    help: "The light, or of the mirror direction at each point: how many distances were looked up (red: 32), where the search \
+           ended (blue before the surface, red behind it, green: missed), by how many degrees it is wrong (blue 0.01, red 100).",
+    affects: Affects::Frame,
+};
+
 /// Texels of a probe; shared by methods that have probes.
 pub const RESOLUTION: ParamSpec = ParamSpec {
     key: "resolution",
@@ -85,6 +95,7 @@ pub const PARAMS: &[ParamSpec] = &[
     REFINEMENTS,
     STEPS,
     TOLERANCE,
+    SHOW,
     RESOLUTION,
     PATHS,
     classical::PARAMS[0],
@@ -118,6 +129,18 @@ impl Method for Impostor {
 
     fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
         probe::prepare(world, &sites(world.scene(), settings), job)
+    }
+
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Option<Result<Prepared, MethodError>> {
+        Some(probe::prepare(world, &sites(world.scene(), settings).coarse(), job))
+    }
+
+    fn warnings(&self, scene: &Scene, prepared: &Prepared, settings: &Settings) -> Vec<String> {
+        probe::warnings(scene, &sites(scene, settings), prepared)
     }
 
     fn seen<'a>(&self, scene: &'a Scene, settings: &Settings) -> Cow<'a, Scene> {
@@ -155,16 +178,28 @@ pub fn effort(settings: &Settings) -> Effort {
     Effort { solver, refinements: whole(settings, &REFINEMENTS), steps: whole(settings, &STEPS), tolerance }
 }
 
+/// What is shown, from settings made of [`PARAMS`].
+pub fn show(settings: &Settings) -> Show {
+    match settings.get(SHOW.key) {
+        Some(ParamValue::Choice(index)) => Show::ALL.get(index).copied().unwrap_or_default(),
+        _ => Show::default(),
+    }
+}
+
 impl ShadePoint for Impostor {
     fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
-        let effort = effort(settings);
+        let (effort, show) = (effort(settings), show(settings));
         let FrameSettings { samples, .. } = FrameSettings::new(settings);
         let lobes = Lobes { samples, rotation: Vec2::new(random[0], random[1]) };
         let (mut sum, mut left) = (Vec3::ZERO, 1.0);
         for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
             let Some(maps) = PreparedMaps::unturned(probe.maps) else { continue };
             let maps = Localised { maps, x: point.position() - probe.middle, probe, effort };
-            sum += weight * reflected(point, &maps, lobes);
+            sum += weight
+                * match show {
+                    Show::Light => reflected(point, &maps, lobes),
+                    other => searched(point, &maps, other),
+                };
             left -= weight;
         }
         // What no probe knows.
@@ -176,6 +211,21 @@ fn reflected(point: &SurfacePoint<'_>, maps: &Localised<'_>, lobes: Lobes) -> Ve
     let surface = point.surface();
     let mean = MeanFresnel::of(surface.fresnel);
     environment(maps, &surface, mean, point.base(), point.coat(), point.to_viewer(), point.occlusion(), lobes)
+}
+
+/// The colour of the search in the mirror direction.
+fn searched(point: &SurfacePoint<'_>, maps: &Localised<'_>, show: Show) -> Vec3 {
+    let mirrored = -point.to_viewer().reject_from(point.normal()) + point.to_viewer().project_onto(point.normal());
+    let r = mirrored.try_normalize().unwrap_or(point.normal());
+    let found = maps.follow(r);
+    if show != Show::Error {
+        return shown(&found, show);
+    }
+    let served = maps.probe.maps.whole("served");
+    let met = point.world().distance_past(point.position(), r, served);
+    // The sky is seen in the same direction from everywhere.
+    let wanted = met.map_or(r, |t| maps.x + t * r);
+    error_shown(wanted.angle_between(found.direction(maps.x, r)).to_degrees())
 }
 
 /// The maps of a probe as a point beside its middle sees them.

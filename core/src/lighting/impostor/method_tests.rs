@@ -4,6 +4,7 @@ use glam::{UVec2, Vec3};
 
 use super::*;
 use crate::lighting::Drawing;
+use crate::lighting::impostor::place;
 use crate::reference::{Options, View};
 use crate::scene::gallery;
 
@@ -71,4 +72,42 @@ fn a_probe_is_the_same_on_any_number_of_threads_and_ends_when_it_is_told() {
     let job = Handle::default();
     job.cancel();
     assert_eq!(Impostor.prepare(&world, &settings, &job), Err(MethodError::Cancelled));
+}
+
+#[test]
+fn probes_are_placed_until_the_bound_is_kept() {
+    // A ball needs one in a room; a long block across it, with a partition beside, more.
+    let scene = gallery::open("room").unwrap();
+    let effort = effort(&settings(Solver::Secant));
+    let placed = place(&scene, &scene.subject, 1.0, &effort, &Handle::default()).unwrap();
+    assert_eq!(placed.places.len(), 1, "{placed:?}");
+    assert!(placed.p95 <= 1.0 && (placed.places[0] - scene.subject_bounds().center()).length() < 0.05, "{placed:?}");
+    let crate_scene = gallery::open("crate").unwrap();
+    let at = |bound: f32| place(&crate_scene, &crate_scene.subject, bound, &effort, &Handle::default()).unwrap();
+    let (loose, tight) = (at(90.0), at(0.0));
+    assert_eq!(loose.places.len(), 1);
+    assert!(tight.p95 < loose.p95, "more probes are better: {tight:?} {loose:?}");
+    let job = Handle::default();
+    job.cancel();
+    assert_eq!(place(&scene, &scene.subject, 1.0, &effort, &job), Err(MethodError::Cancelled));
+    assert!(matches!(place(&scene, &[], 1.0, &effort, &Handle::default()), Err(MethodError::Unfit(_))));
+}
+
+#[test]
+fn errors_of_hits_tell_searches_apart() {
+    let world = room();
+    let settings = settings(Solver::Secant);
+    let prepared = Impostor.prepare(&world, &settings, &Handle::default()).unwrap();
+    let view = View { camera: world.scene().cameras[0].clone(), size: UVec2::splat(60), seed: 0 };
+    let rays = super::super::mirror_rays(&world, &prepared, &view);
+    assert!(rays.len() > 200 && rays.iter().all(|ray| ray.met.is_some()), "a closed room");
+    let of = |solver: Solver, refinements: u32| {
+        let effort = Effort { solver, refinements, steps: 32, tolerance: 0.05 };
+        super::super::hit_errors(&prepared, &rays, &effort)
+    };
+    let (classical, secant, march) = (of(Solver::Classical, 0), of(Solver::Secant, 1), of(Solver::March, 4));
+    assert!(classical.p95 > 13.0 && classical.misses == 1.0, "{classical:?}");
+    // The walls are planes, which the distances keep exactly.
+    assert!(secant.p95 < 0.1 && secant.misses < 0.01, "{secant:?}");
+    assert!(march.p95 < 0.1 && march.off < 0.01 && march.lookups > secant.lookups, "{march:?}");
 }

@@ -7,8 +7,11 @@
 
 mod march;
 mod method;
+mod placement;
 mod proxy;
 mod secant;
+mod show;
+mod study;
 #[cfg(test)]
 mod tests;
 
@@ -16,7 +19,12 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 
-pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, sites};
+pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, show, sites};
+pub use placement::{Placement, place};
+pub use show::{
+    MOST_LOOKUPS, MOST_RATIO, SHOW_ERROR, SHOW_LIGHT, SHOW_LOOKUPS, SHOW_RATIO, Show, error_shown, heat, shown,
+};
+pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 
 /// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
 pub static WGSL: Leaf = Leaf {

@@ -6,7 +6,7 @@ use crate::lighting::cube_map::on_face;
 use crate::math::cube::{self, mirrored};
 
 /// Neighbouring depths whose ratio is above this belong to different surfaces.
-const JUMP: f32 = 1.15;
+pub const JUMP: f32 = 1.15;
 
 /// Distances around a place, `6 * face * face` of them by faces, rows, texels, as inverse depths along the axis of the face: on
 /// a plane these are linear over the face, so that what lies between texels is exact. 0 is the sky.
@@ -20,6 +20,11 @@ impl<'a> DistanceCube<'a> {
     /// With `face` texels along an edge; what is missing is sky.
     pub fn new(face: u32, inverse: &'a [f32]) -> DistanceCube<'a> {
         DistanceCube { face: face.max(1), inverse }
+    }
+
+    /// Texels along an edge.
+    pub fn face(&self) -> u32 {
+        self.face
     }
 
     /// Unit direction of the middle of a texel, in the world.

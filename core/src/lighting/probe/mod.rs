@@ -10,25 +10,30 @@ mod sites;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod warnings;
 mod weight;
 
 use glam::Vec3;
 
 use crate::leaf::Leaf;
 use crate::lighting::{Prepared, impostor::Extent};
+use crate::math;
 
-pub use distances::DistanceCube;
+pub use distances::{DistanceCube, JUMP};
 pub use seen::surroundings;
 pub use sites::{Defaults, MOST, Site, Sites};
-pub use trace::prepare;
+pub use trace::{Surroundings, prepare};
+pub use warnings::warnings;
 pub use weight::{BLEND, FADE, Place, weights};
 
-/// The WGSL twin of the weights. The pass supplies `probe_place`, where a probe stands and half its box.
+/// The WGSL twin of weights and distances. The pass supplies `probe_place`, where a probe stands and half its box, and
+/// `probe_inverse_depth`, a texel of a [`DistanceCube`].
 pub static WGSL: Leaf = Leaf {
     name: "probe",
     source: include_str!("probe.wgsl"),
-    needs: &[],
-    externs: "fn probe_place(index: u32) -> ProbePlace { return ProbePlace(vec3f(0.0), vec3f(1.0)); }",
+    needs: &[&math::WGSL],
+    externs: "fn probe_place(index: u32) -> ProbePlace { return ProbePlace(vec3f(0.0), vec3f(1.0)); }
+fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 { return 1.0; }",
 };
 
 /// The probes that were prepared.

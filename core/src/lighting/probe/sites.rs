@@ -54,6 +54,22 @@ impl Sites {
     }
 }
 
+/// Most texels along an edge, and paths for a texel, of a probe that is made in a part of a second.
+const COARSE: Defaults = Defaults { face: 32, paths: 4 };
+
+impl Sites {
+    /// The same places, recorded in a part of a second.
+    #[must_use]
+    pub fn coarse(mut self) -> Sites {
+        for site in &mut self.list {
+            site.face = site.face.min(COARSE.face);
+            site.paths = site.paths.min(COARSE.paths);
+            site.source = ProbeSource::Raster;
+        }
+        self
+    }
+}
+
 impl Site {
     fn new(scene: &Scene, probe: &Probe, defaults: Defaults) -> Option<Site> {
         let mut served = if probe.serves.is_empty() { scene.served() } else { probe.serves.clone() };
@@ -68,7 +84,7 @@ impl Site {
             name: probe.name.clone(),
             middle: probe.position.unwrap_or_else(|| scene.bounds_of(&served).center()),
             half: probe.extent.unwrap_or(Vec3::splat(EVERYWHERE)),
-            face: probe.resolution.unwrap_or(defaults.face).max(1),
+            face: probe.resolution.unwrap_or(defaults.face).max(2),
             source: probe.source,
             paths: probe.paths.unwrap_or(defaults.paths).max(1),
             served: served.into_iter().map(|i| i as u32).collect(),

@@ -138,3 +138,38 @@ fn probes_are_kept_in_parts_and_found_by_whom_they_serve() {
     std::fs::remove_dir_all(folder).unwrap();
     assert!(impostor::Impostor.points().is_some());
 }
+
+#[test]
+fn a_probe_where_it_fails_is_told() {
+    let room = gallery::open("room").unwrap();
+    let warned = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = room.clone();
+        change(&mut scene);
+        let world = World::new(&Arc::new(scene.clone()), Options::default());
+        let sites = Sites::new(&scene, DEFAULTS);
+        let prepared = prepare(&world, &sites, &Handle::default()).unwrap();
+        warnings(&scene, &sites, &prepared).join("; ")
+    };
+    let at = |position: Vec3| {
+        move |s: &mut Scene| {
+            s.probes = vec![scene::Probe { name: "p".into(), position: Some(position), ..Default::default() }];
+        }
+    };
+    assert_eq!(warned(&|_| ()), "");
+    // The walls are 0.12 m thick slabs.
+    let inside = warned(&at(Vec3::new(1.06, 0.0, 0.0)));
+    assert!(inside.contains("probe `p`") && inside.contains("inside of an object"), "{inside}");
+    let outside = warned(&at(Vec3::new(3.0, 0.0, 0.0)));
+    assert!(outside.contains("beyond the surroundings"), "{outside}");
+    let alone = warned(&|s| {
+        let served = s.subject[0];
+        s.instances.iter_mut().enumerate().for_each(|(i, instance)| instance.visible = i == served);
+    });
+    assert!(alone.contains("no probe serves"), "{alone}");
+    let sky = warned(&|s| {
+        // All but a wall behind, far away.
+        s.instances.iter_mut().skip(2).for_each(|instance| instance.visible = false);
+        s.instances[1].world_from_local.translation += glam::Vec3A::new(0.0, 0.0, 500.0);
+    });
+    assert!(sky.contains("nothing but the sky"), "{sky}");
+}

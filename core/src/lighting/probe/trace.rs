@@ -30,7 +30,7 @@ pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, M
         let world = match around.take() {
             // Most often all serve the same.
             Some((served, around)) if served == site.served => around,
-            _ => World::new(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
+            _ => world.updated(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
         };
         parts.push(record(&world, site, job)?);
         job.set_progress(parts.len() as f32 / sites.list.len() as f32);
@@ -39,11 +39,36 @@ pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, M
     Ok(Prepared::nothing().with_parts(parts))
 }
 
+/// How far away everything around a place is.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// The place.
+    pub middle: Vec3,
+    /// What the distances say as a whole.
+    pub extent: Extent,
+    face: u32,
+    inverse: Vec<f32>,
+    /// Shares of the directions that see the sky, and surfaces from behind.
+    shares: [f32; 2],
+}
+
+impl Surroundings {
+    /// What is seen from a place, with `face` texels along the edge of a face.
+    pub fn seen(around: &World, middle: Vec3, face: u32) -> Surroundings {
+        let (inverse, shares) = distances(around, middle, face);
+        Surroundings { middle, extent: extent(&inverse, face), face, inverse, shares }
+    }
+
+    /// The distances.
+    pub fn distances(&self) -> DistanceCube<'_> {
+        DistanceCube::new(self.face, &self.inverse)
+    }
+}
+
 /// Records one; `around` is the scene without what it serves.
 fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodError> {
     let Site { middle, half, face, .. } = *site;
-    let inverse = distances(around, middle, face);
-    let extent = extent(&inverse, face);
+    let Surroundings { inverse, extent, shares, .. } = Surroundings::seen(around, middle, face);
     let map = match site.source {
         ProbeSource::Traced => panorama(around, middle, (face, site.paths), job)?,
         ProbeSource::Raster => {
@@ -57,18 +82,22 @@ fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodE
         .with("served", site.served.clone())
         .with("distances", inverse)
         .with("probe", numbers.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>())
-        .with("face", vec![face]))
+        .with("face", vec![face])
+        .with("shares", shares.to_vec()))
 }
 
-fn distances(around: &World, middle: Vec3, face: u32) -> Vec<f32> {
-    (0..6 * face * face)
-        .into_par_iter()
-        .map(|i| {
-            let (side, y, x) = (i / (face * face), i / face % face, i % face);
-            let direction = DistanceCube::direction(face, side, x, y);
-            DistanceCube::kept(face, x, y, around.distance(middle, direction))
-        })
-        .collect()
+/// What is kept of the distances, and the shares of the texels that are sky and that see a surface from behind.
+fn distances(around: &World, middle: Vec3, face: u32) -> (Vec<f32>, [f32; 2]) {
+    let texel = |i: u32| {
+        let (side, y, x) = (i / (face * face), i / face % face, i % face);
+        let met = around.met_from_behind(middle, DistanceCube::direction(face, side, x, y));
+        (DistanceCube::kept(face, x, y, met.map(|(distance, _)| distance)), met.is_some_and(|(_, behind)| behind))
+    };
+    let (inverse, behind): (Vec<f32>, Vec<bool>) = (0..6 * face * face).into_par_iter().map(texel).unzip();
+    let share = |count: usize| count as f32 / inverse.len() as f32;
+    let sky = share(inverse.iter().filter(|inverse| **inverse == 0.0).count());
+    let behind = share(behind.iter().filter(|behind| **behind).count());
+    (inverse, [sky, behind])
 }
 
 /// What the distances say as a whole; a room of 1 m where there is only sky, which no ray meets.

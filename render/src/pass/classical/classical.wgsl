@@ -1,11 +1,5 @@
 // Lights the G-buffer and fills the rest with the environment.
 
-@group(1) @binding(0) var words0: texture_2d<u32>;
-@group(1) @binding(1) var words1: texture_2d<u32>;
-@group(1) @binding(2) var words2: texture_2d<u32>;
-@group(1) @binding(3) var words3: texture_2d<u32>;
-@group(1) @binding(4) var depth: texture_depth_2d;
-
 // llvmpipe compiles a fragment shader twice, once for blocks that a triangle covers and is seen in wholly, unless it may
 // discard. Compiling takes it far longer than drawing.
 override discards: bool = false;

@@ -39,17 +39,18 @@ pub fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             texture_entry(9, float, cube),
             buffer_entry(10, fragment, storage),
             buffer_entry(11, fragment, storage),
+            buffer_entry(12, fragment, wgpu::BufferBindingType::Uniform),
         ],
     })
 }
 
-/// Group 2 for these lights, this environment and these tables.
+/// Group 2 for these lights, this environment, these tables and places of probes.
 pub fn light_group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
     maps: &EnvironmentMaps,
     shadows: &Shadows,
-    tables: &wgpu::Buffer,
+    (tables, places): (&wgpu::Buffer, &wgpu::Buffer),
 ) -> wgpu::BindGroup {
     let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance, &maps.dimmed].map(cube_view);
     let cube_sampler = cube_sampler(&gpu.device);
@@ -67,6 +68,7 @@ pub fn light_group(
         wgpu::BindingResource::TextureView(&cubes[3]),
         maps.sources.as_entire_binding(),
         shadows.unlit.as_entire_binding(),
+        places.as_entire_binding(),
     ];
     let entries: Vec<_> =
         (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -88,7 +90,7 @@ pub struct ClassicalPass {
     layouts: [wgpu::BindGroupLayout; 4],
     module: OnceLock<wgpu::ShaderModule>,
     /// By their variants.
-    pipelines: [OnceLock<wgpu::RenderPipeline>; 4],
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 8],
 }
 
 /// What a picture needs of the shader. A software driver compiles less in a part of the time.
@@ -98,6 +100,8 @@ pub struct Variant {
     pub sampled: bool,
     /// Sums lights with an area.
     pub areas: bool,
+    /// Leaves to probes what they know.
+    pub probed: bool,
 }
 
 impl ClassicalPass {
@@ -128,15 +132,20 @@ impl ClassicalPass {
     }
 
     /// The pipeline of a variant. Blocks while it is compiled.
-    pub fn pipeline(&self, Variant { sampled, areas }: Variant) -> &wgpu::RenderPipeline {
-        self.pipelines[usize::from(sampled) + 2 * usize::from(areas)].get_or_init(|| {
+    pub fn pipeline(&self, Variant { sampled, areas, probed }: Variant) -> &wgpu::RenderPipeline {
+        self.pipelines[usize::from(sampled) + 2 * usize::from(areas) + 4 * usize::from(probed)].get_or_init(|| {
             let module = self.module.get_or_init(|| shader::CLASSICAL.module(&self.device));
             let layouts = self.layouts.each_ref().map(Some);
             let mut constants = frame_constants(self.format);
-            let switches = [("sampled", sampled), ("areas", areas), ("discards", self.software)];
+            let switches = [("sampled", sampled), ("areas", areas), ("probed", probed), ("discards", self.software)];
             constants.extend(switches.map(|(name, on)| (name, f64::from(u8::from(on)))));
             fullscreen_pipeline(&self.device, "classical", &layouts, module, self.format, &constants)
         })
+    }
+
+    /// The layout of the G-buffer as group 1.
+    pub fn gbuffer_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
     }
 
     /// The G-buffer as group 1.

@@ -12,6 +12,7 @@
 @group(2) @binding(9) var dimmed_cube: texture_cube<f32>;
 @group(2) @binding(10) var<storage, read> sources: array<SourceData>;
 @group(2) @binding(11) var<storage, read> unlit: array<u32>;
+@group(2) @binding(12) var<uniform> probe_places: array<vec4f, 64>;
 
 fn ggx_albedo_entry(index: u32) -> f32 {
     return tables[index];
@@ -63,50 +64,21 @@ fn classical_irradiance(direction: vec3f) -> vec3f {
         * textureSampleLevel(irradiance_cube, cube_sampler, environment_direction(direction), 0.0).rgb;
 }
 
-fn surface_of(t: Texel, m: MaterialData) -> Surface {
-    var s: Surface;
-    s.base_color = t.base_color;
-    s.metallic = t.metallic;
-    s.alpha = t.alpha;
-    s.lobe = m.flags >> MATERIAL_LOBE_SHIFT;
-    s.exponent = t.exponent;
-    s.dielectric_f0 = t.dielectric_f0;
-    s.dielectric_f90 = t.dielectric_f90;
-    s.coat = t.coat;
-    s.coat_alpha = t.coat_alpha;
-    s.masking = view.masking;
-    s.multiple_scattering = view.multiple_scattering != 0u;
-    if (m.flags & MATERIAL_PRESET) != 0u {
-        s.fresnel = Fresnel(
-            m.fresnel_form, m.fresnel_table, m.fresnel_f0, m.fresnel_c0, m.fresnel_c1, m.fresnel_c2, m.fresnel_c3,
-        );
-        s.fresnel_mean = m.fresnel_mean;
-    } else {
-        let none = vec3f(0.0);
-        s.fresnel = Fresnel(FRESNEL_RESCALED, 0u, t.base_color, none, none, none, none);
-        s.fresnel_mean = t.base_color + (1.0 - t.base_color) / 21.0;
-    }
-    return s;
-}
-
-// Largest radiance that a frame holds, where the device blends half floats only.
-override frame_max: f32 = 3.0e38;
-
 // Without it lights with an area are none, and the code that sums them is left out: software drivers compile it for long.
 override areas: bool = true;
 
 // Without it lobes are looked up once, and the code that samples them is left out.
 override sampled: bool = true;
 
-// True where the picture shows the light of a source, one of the CONTRIBUTION_ constants.
-fn shows(source: u32) -> bool {
-    return view.contribution == CONTRIBUTION_ALL || view.contribution == source;
+// Without it no probes take the place of the environment.
+override probed: bool = false;
+
+fn probe_place(index: u32) -> ProbePlace {
+    return ProbePlace(probe_places[2u * index].xyz, probe_places[2u * index + 1u].xyz);
 }
 
-// What turns the samples of a pixel in this frame.
-fn sample_rotation(pixel: vec2u) -> vec2f {
-    let hash = sampling_pcg(pixel.x + sampling_pcg(pixel.y + sampling_pcg(view.frame)));
-    return vec2f(sampling_unit(hash), sampling_unit(sampling_pcg(hash)));
+fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 {
+    return 0.0;
 }
 
 fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
@@ -135,10 +107,18 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
     if !shows(CONTRIBUTION_ENVIRONMENT) {
         return min(value, vec3f(frame_max));
     }
+    var left = 1.0;
+    if probed {
+        // The rest is added by the passes of the probes.
+        left -= probe_weight(PROBE_ALL, instances[t.id - 1u].probes, position);
+        if left <= 0.0 {
+            return min(value, vec3f(frame_max));
+        }
+    }
     let lobes = ClassicalLobes(
         select(0u, view.samples, sampled), view.source_count, rotation, view.environment_mips, view.prefiltered_mips,
         view.wide_alpha,
     );
-    value += classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, lobes);
+    value += left * classical_environment(s, m.albedo_table, base, coat, to_viewer, t.occlusion, lobes);
     return min(value, vec3f(frame_max));
 }

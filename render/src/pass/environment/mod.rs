@@ -8,6 +8,7 @@ mod plan;
 mod refine;
 mod resources;
 mod steps;
+mod uploaded;
 
 use burnish_core::scene::Environment;
 

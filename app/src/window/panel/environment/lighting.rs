@@ -70,6 +70,9 @@ fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bo
             (format!("preparing {:.0} %", 100.0 * share), "What there was before stays in use meanwhile.")
         }
         State::Fresh => ("prepared".into(), "What the method looks up was made of this very scene."),
+        State::Draft => {
+            ("draft".into(), "Coarse, of this very scene; the whole is made when nothing changes for a moment.")
+        }
         State::Stale => {
             ("stale".into(), "The scene or a setting changed since; what was prepared before stays in use.")
         }
@@ -97,6 +100,9 @@ fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bo
             _ => {}
         }
     });
+    for warning in preparation.warnings() {
+        ui.label(RichText::new(warning).small().color(ui.visuals().warn_fg_color));
+    }
     if let Some(fault) = preparation.fault() {
         ui.label(RichText::new(fault).small().color(ui.visuals().error_fg_color));
     }

@@ -6,6 +6,7 @@ mod light;
 mod lighting;
 mod map;
 mod overrides;
+mod probes;
 mod saved;
 mod sky;
 mod studio;
@@ -23,6 +24,7 @@ use super::row::{number, row_ui, section};
 pub struct EnvironmentPanel {
     light: light::LightSection,
     saved: saved::SavedSection,
+    probes: probes::ProbesSection,
 }
 
 impl EnvironmentPanel {
@@ -34,6 +36,9 @@ impl EnvironmentPanel {
         section(ui, "Camera", |ui| camera::ui(ui, context.session));
         section(ui, "Saved cameras", |ui| self.saved.ui(ui, context));
         section(ui, "Lighting method", |ui| lighting::ui(ui, context));
+        if context.session.document().lighting.live_method().info().reads.probes {
+            section(ui, "Probes", |ui| self.probes.ui(ui, context));
+        }
         if context.reference.is_on() || context.compare.view().is_some() {
             section(ui, "Reference settings", |ui| lighting::reference_ui(ui, context.session));
         }

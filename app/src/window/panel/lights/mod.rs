@@ -9,7 +9,7 @@ use eframe::egui;
 use super::Context;
 use super::row::section;
 use crate::window::aids::Source;
-use crate::window::preparations::drawn_on_device;
+use crate::window::preparations::shows_sources;
 use crate::window::widget::{choice_ui, columns, name_ui};
 
 /// The lights panel.
@@ -46,7 +46,7 @@ pub fn source_ui(ui: &mut egui::Ui, context: &mut Context<'_>) {
         }
     });
     let compared = context.compare.view().is_some();
-    if chosen != 0 && (compared || !drawn_on_device(context.session.layers()) && !context.reference.is_on()) {
+    if chosen != 0 && (compared || !shows_sources(context.session.layers()) && !context.reference.is_on()) {
         let text = match compared {
             true => "Comparisons show all light.",
             false => "Methods on the processor show all light; the reference shows it alone.",

@@ -12,7 +12,7 @@ use super::overlay;
 use crate::number::short;
 use crate::window::compare::{Compare, CompareView, Legend, Pictures, SideScene, Source, value_at};
 use crate::window::panel::Context;
-use crate::window::preparations::drawn_on_device;
+use crate::window::preparations::{self, drawn_on_device};
 use crate::window::reference::{Look, Subject};
 use crate::window::stage::{Screen, Shown};
 
@@ -75,6 +75,7 @@ pub fn ui(ui: &mut egui::Ui, response: &Response, context: &mut Context<'_>, fra
         let scene = scenes[side as usize].clone();
         let own = Frame {
             settings: scene.document.lighting.settings(),
+            lighting: preparations::lighting(&scene.layers, &context.compare.preparations[side as usize]),
             moving: frame.moving || !turns[side as usize],
             ..frame.clone()
         };

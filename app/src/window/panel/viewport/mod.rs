@@ -7,6 +7,7 @@ mod lamps;
 mod legend;
 mod navigation;
 mod overlay;
+mod probes;
 mod readout;
 mod switch;
 mod tools;
@@ -24,7 +25,7 @@ use glam::UVec2;
 use super::{Context, DraggedPreset};
 use crate::window::commands::Command;
 use crate::window::compare::CompareView;
-use crate::window::preparations::drawn_on_device;
+use crate::window::preparations::{self, drawn_on_device, shows_sources};
 use crate::window::reference::{Look, Subject};
 use crate::window::request::Request;
 use crate::window::session::Session;
@@ -105,6 +106,7 @@ impl ViewportPanel {
         let whole = UVec2::new(size.x as u32, size.y as u32);
         let mut frame = frame_of(context.session, compare::size(view, whole), moving);
         frame.mode = context.aids.mode;
+        frame.lighting = preparations::lighting(context.session.layers(), context.preparations);
         if view.is_none() {
             frame.contribution = context.aids.contribution(context.session.scene());
         }
@@ -269,7 +271,7 @@ impl ViewportPanel {
             }
             _ => self.readout.clear(),
         }
-        let honoured = view.is_none() && (context.reference.is_on() || drawn_on_device(context.session.layers()));
+        let honoured = view.is_none() && (context.reference.is_on() || shows_sources(context.session.layers()));
         if view.is_none_or(CompareView::has_sides) {
             legend::ui(ui, rect, context.aids, honoured);
         }
@@ -388,6 +390,7 @@ fn frame_of(session: &Session, size: UVec2, moving: bool) -> Frame {
         size,
         camera: document.view.camera.camera(),
         settings: document.lighting.settings(),
+        lighting: Default::default(),
         tone: document.view.tone.parse::<ToneMap>().unwrap_or_default(),
         exposure_ev: document.view.exposure_ev as f32,
         mode: Default::default(),

@@ -8,7 +8,7 @@ use eframe::egui::{self, Pos2, Vec2};
 use glam::{Quat, Vec3};
 
 use super::gizmo::{Change, Gizmo, Mode, Sight};
-use super::lamps;
+use super::{lamps, probes};
 use crate::window::lights;
 use crate::window::panel::Context;
 use crate::window::session::Session;
@@ -109,6 +109,9 @@ impl Tools {
     /// Shows the lights, and the handles of the tool on what is selected.
     pub fn ui(&mut self, ui: &mut egui::Ui, sight: &Sight, context: &mut Context<'_>) {
         lamps::ui(ui, sight, context.session);
+        let prepared = context.preparations.prepared(context.session.layers());
+        let prepared = prepared.as_ref().and_then(|prepared| prepared.first());
+        probes::ui(ui, sight, context.session, &context.aids.probes, prepared.map(Arc::as_ref));
         let Some(mode) = self.tool.mode() else { return };
         let Some((at, name)) = self.selected_place(context.session) else { return };
         let moved = self.gizmo.ui(ui, sight, mode, at, &name);

@@ -1,0 +1,185 @@
+//! Probes on the device: their cubes and distances, and which instances they serve.
+
+use std::sync::Arc;
+
+use burnish_core::lighting::probe::{self, Probe, Probes};
+use burnish_core::lighting::{MethodId, Prepared, area_cube, impostor};
+use burnish_core::param::Settings;
+
+use crate::device::Gpu;
+use crate::error::RenderError;
+use crate::layout::types::ProbeData;
+use crate::pass::environment::EnvironmentMaps;
+
+/// What lights a picture: a method with what it prepared. One without a pass on the device, or without a preparation that it needs, is
+/// `classical`.
+#[derive(Clone, Debug, Default)]
+pub struct Lighting {
+    prepared: Option<Arc<Prepared>>,
+    is_area_cube: bool,
+}
+
+impl Lighting {
+    /// A method with its preparation.
+    pub fn new(method: MethodId, prepared: Option<Arc<Prepared>>) -> Lighting {
+        let is_area_cube = method.0 == area_cube::ID;
+        let knows = is_area_cube || method.0 == impostor::ID;
+        Lighting { prepared: prepared.filter(|prepared| knows && !prepared.is_nothing()), is_area_cube }
+    }
+
+    /// It takes the place of the environment somewhere.
+    pub fn is_prepared(&self) -> bool {
+        self.prepared.is_some()
+    }
+
+    /// What was prepared, where the device draws with it.
+    pub fn prepared(&self) -> Option<&Arc<Prepared>> {
+        self.prepared.as_ref()
+    }
+
+    /// Bits of the probes that serve an instance.
+    pub(crate) fn serving(&self, instance: u32) -> u32 {
+        let Some(prepared) = &self.prepared else { return 0 };
+        let probes = Probes::of(prepared);
+        let serving = (0..probes.len().min(probe::MOST)).filter(|index| probes.serves(*index, instance));
+        serving.map(|index| 1 << index).sum()
+    }
+
+    /// The method is `area-cube`.
+    pub(crate) fn is_area_cube(&self) -> bool {
+        self.is_area_cube
+    }
+
+    pub(crate) fn is_like(&self, other: &Lighting) -> bool {
+        match (&self.prepared, &other.prepared) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) && self.is_area_cube == other.is_area_cube,
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+}
+
+/// How the surroundings of probes are looked up, from the settings of a method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ProbeLook {
+    pub effort: impostor::Effort,
+    pub show: impostor::Show,
+    /// Of the method `area-cube`: texels along an edge, and what is asked of them.
+    pub edge: u32,
+    pub asked: area_cube::Asked,
+}
+
+impl ProbeLook {
+    pub fn new(settings: &Settings) -> ProbeLook {
+        ProbeLook {
+            effort: impostor::effort(settings),
+            show: impostor::show(settings),
+            edge: area_cube::edge(settings),
+            asked: area_cube::asked(settings),
+        }
+    }
+}
+
+/// The probes of a preparation.
+pub(crate) struct GpuProbes {
+    pub prepared: Arc<Prepared>,
+    /// Middle and half box of each, as the uniform of shaders.
+    pub places: wgpu::Buffer,
+    pub each: Vec<GpuProbe>,
+}
+
+/// One of them.
+pub(crate) struct GpuProbe {
+    pub maps: EnvironmentMaps,
+    /// What is kept of distances, a layer for each face.
+    pub inverse_depths: wgpu::TextureView,
+    pub data: wgpu::Buffer,
+    /// The texels of its coarse cubes, never empty.
+    pub coarse: wgpu::Buffer,
+}
+
+impl GpuProbes {
+    pub fn new(gpu: &Gpu, prepared: &Arc<Prepared>) -> Result<GpuProbes, RenderError> {
+        let probes = Probes::of(prepared);
+        let mut each = Vec::with_capacity(probes.len());
+        for (index, probe) in probes.iter().enumerate().take(probe::MOST) {
+            each.push(GpuProbe::new(gpu, index as u32, &probe)?);
+        }
+        Ok(GpuProbes { prepared: prepared.clone(), places: places(gpu, probes), each })
+    }
+}
+
+/// Where probes stand, as the uniform of shaders.
+pub(crate) fn places(gpu: &Gpu, probes: Probes<'_>) -> wgpu::Buffer {
+    let mut places = [[0.0f32; 4]; 2 * probe::MOST];
+    for (pair, place) in places.chunks_exact_mut(2).zip(probes.places()) {
+        pair[0] = place.middle.extend(0.0).to_array();
+        pair[1] = place.half.extend(0.0).to_array();
+    }
+    gpu.buffer("probe places", bytemuck::cast_slice(&places), wgpu::BufferUsages::UNIFORM)
+}
+
+impl GpuProbe {
+    fn new(gpu: &Gpu, index: u32, probe: &Probe<'_>) -> Result<GpuProbe, RenderError> {
+        let unfit = || RenderError::Preparation("a probe has no maps; prepare it again".into());
+        let maps = EnvironmentMaps::uploaded(gpu, probe.maps).ok_or_else(unfit)?;
+        let (face, inverse) = (probe.distances.face(), probe.maps.floats("distances"));
+        if inverse.len() as u64 != 6 * u64::from(face).pow(2) || face > gpu.device.limits().max_texture_dimension_2d {
+            return Err(unfit());
+        }
+        let extent = probe.extent;
+        let data = ProbeData {
+            middle: probe.middle,
+            index,
+            low: extent.low,
+            near: extent.near,
+            high: extent.high,
+            far: extent.far,
+            radius: extent.radius,
+            scale: maps.scale,
+            face,
+            radiance_mips: maps.radiance.mip_level_count() as f32,
+            prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
+            source_count: maps.source_count,
+            wide_alpha: maps.wide_alpha,
+            pad0: 0,
+        };
+        Ok(GpuProbe {
+            inverse_depths: depths(gpu, face, inverse),
+            coarse: coarse(gpu, probe),
+            data: gpu.buffer("probe", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM),
+            maps,
+        })
+    }
+}
+
+/// The texels as three vectors each; a black one where the method is another.
+fn coarse(gpu: &Gpu, probe: &Probe<'_>) -> wgpu::Buffer {
+    let numbers = probe.maps.floats(area_cube::ARRAY);
+    let missing = [0.0; area_cube::NUMBERS];
+    let numbers = if numbers.is_empty() { &missing[..] } else { numbers };
+    gpu.buffer("coarse cubes", bytemuck::cast_slice(numbers), wgpu::BufferUsages::STORAGE)
+}
+
+fn depths(gpu: &Gpu, face: u32, inverse: &[f32]) -> wgpu::TextureView {
+    let size = wgpu::Extent3d { width: face, height: face, depth_or_array_layers: 6 };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("inverse depths"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(inverse),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * face), rows_per_image: Some(face) },
+        size,
+    );
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}

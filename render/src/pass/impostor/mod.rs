@@ -131,6 +131,7 @@ impl ImpostorPass {
             wgpu::BindingResource::TextureView(&probe.inverse_depths),
             probe.data.as_entire_binding(),
             places.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&probe.inverse_bounds),
         ];
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -213,6 +214,7 @@ fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             texture_entry(7, float(false), wgpu::TextureViewDimension::D2Array),
             buffer_entry(8, fragment, wgpu::BufferBindingType::Uniform),
             buffer_entry(9, fragment, wgpu::BufferBindingType::Uniform),
+            texture_entry(10, float(false), wgpu::TextureViewDimension::D2Array),
         ],
     })
 }

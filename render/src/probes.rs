@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use burnish_core::lighting::probe::{self, Probe, Probes};
+use burnish_core::lighting::probe::{self, Cells, Probe, Probes};
 use burnish_core::lighting::{MethodId, Prepared, area_cube, impostor};
 use burnish_core::param::Settings;
 
@@ -92,6 +92,8 @@ pub(crate) struct GpuProbe {
     pub maps: EnvironmentMaps,
     /// What is kept of distances, a layer for each face.
     pub inverse_depths: wgpu::TextureView,
+    /// Bounds of them, by levels.
+    pub inverse_bounds: wgpu::TextureView,
     pub data: wgpu::Buffer,
     /// The texels of its coarse cubes, never empty.
     pub coarse: wgpu::Buffer,
@@ -126,6 +128,10 @@ impl GpuProbe {
         if inverse.len() as u64 != 6 * u64::from(face).pow(2) || face > gpu.device.limits().max_texture_dimension_2d {
             return Err(unfit());
         }
+        let (cells, kept) = (Cells::new(face), probe.maps.floats("bounds"));
+        if kept.len() != 2 * cells.count() {
+            return Err(unfit());
+        }
         let extent = probe.extent;
         let data = ProbeData {
             middle: probe.middle,
@@ -146,6 +152,7 @@ impl GpuProbe {
         Ok(GpuProbe {
             inverse_depths: depths(gpu, face, inverse),
             coarse: coarse(gpu, probe),
+            inverse_bounds: bounds(gpu, &cells, kept),
             data: gpu.buffer("probe", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM),
             maps,
         })
@@ -161,23 +168,49 @@ fn coarse(gpu: &Gpu, probe: &Probe<'_>) -> wgpu::Buffer {
 }
 
 fn depths(gpu: &Gpu, face: u32, inverse: &[f32]) -> wgpu::TextureView {
-    let size = wgpu::Extent3d { width: face, height: face, depth_or_array_layers: 6 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("inverse depths"),
-        size,
-        mip_level_count: 1,
+    let texture = layers(gpu, "inverse depths", face, 1, wgpu::TextureFormat::R32Float);
+    write(gpu, &texture, 0, inverse);
+    layers_view(&texture)
+}
+
+/// A mip map for each level of cells from 1 on; one texel that nothing reads where there are none.
+fn bounds(gpu: &Gpu, cells: &Cells, kept: &[f32]) -> wgpu::TextureView {
+    let texture =
+        layers(gpu, "inverse bounds", cells.width(1).max(1), cells.top.max(1), wgpu::TextureFormat::Rg32Float);
+    for level in 1..=cells.top {
+        let (first, count) = (2 * cells.index(level, 0, 0, 0), 12 * (cells.width(level) as usize).pow(2));
+        write(gpu, &texture, level - 1, &kept[first..first + count]);
+    }
+    layers_view(&texture)
+}
+
+/// Six layers.
+fn layers(gpu: &Gpu, label: &str, width: u32, mips: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height: width, depth_or_array_layers: 6 },
+        mip_level_count: mips,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
-    });
+    })
+}
+
+/// Writes all layers of a mip map.
+fn write(gpu: &Gpu, texture: &wgpu::Texture, mip: u32, numbers: &[f32]) {
+    let width = (texture.width() >> mip).max(1);
+    let texel = texture.format().block_copy_size(None).unwrap_or(4);
     gpu.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(inverse),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * face), rows_per_image: Some(face) },
-        size,
+        wgpu::TexelCopyTextureInfo { mip_level: mip, ..texture.as_image_copy() },
+        bytemuck::cast_slice(numbers),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(width) },
+        wgpu::Extent3d { width, height: width, depth_or_array_layers: 6 },
     );
+}
+
+fn layers_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()

@@ -215,6 +215,7 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_FALSE_POSITION", impostor::FALSE_POSITION.into()),
             ("IMPOSTOR_MIXED", impostor::MIXED.into()),
             ("IMPOSTOR_MARCH", impostor::MARCH.into()),
+            ("IMPOSTOR_PYRAMID", impostor::PYRAMID.into()),
             ("IMPOSTOR_EPSILON", impostor::EPSILON.into()),
             ("IMPOSTOR_SHOW_LIGHT", impostor::SHOW_LIGHT.into()),
             ("IMPOSTOR_SHOW_LOOKUPS", impostor::SHOW_LOOKUPS.into()),
@@ -222,6 +223,14 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_SHOW_ERROR", impostor::SHOW_ERROR.into()),
             ("IMPOSTOR_MOST_LOOKUPS", impostor::MOST_LOOKUPS.into()),
             ("IMPOSTOR_MOST_RATIO", impostor::MOST_RATIO.into()),
+        ],
+        "pyramid" => vec![
+            ("PYRAMID_JUMP", probe::JUMP.into()),
+            ("PYRAMID_WAYS", impostor::pyramid::WAYS.into()),
+            ("PYRAMID_LOOKUPS_PER_STEP", impostor::pyramid::LOOKUPS_PER_STEP.into()),
+            ("PYRAMID_ENTRY", impostor::pyramid::ENTRY.into()),
+            ("PYRAMID_DEPTH_MIN", impostor::pyramid::DEPTH_MIN.into()),
+            ("PYRAMID_FAR", impostor::pyramid::FAR.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![

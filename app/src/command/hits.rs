@@ -141,7 +141,10 @@ fn measure(
     };
     let mut rows = Vec::new();
     for solver in solvers {
-        let refined = !matches!(solver, Solver::Classical | Solver::Sphere | Solver::Box | Solver::Perpendicular);
+        let refined = !matches!(
+            solver,
+            Solver::Classical | Solver::Sphere | Solver::Box | Solver::Perpendicular | Solver::Pyramid
+        );
         for refinements in if refined { args.refinements.as_slice() } else { &[0] } {
             let mut own = settings.clone();
             own.set("solver", solver.id()).map_err(|e| Failure::usage(e.to_string()))?;

@@ -74,6 +74,8 @@ enum Found {
     Same,
     /// It is not, and nobody asked for another.
     Other,
+    /// The held draft is that of the subject.
+    SameDraft,
     Drafted(Held),
     Made(Held),
     Failed(MethodError),
@@ -128,6 +130,10 @@ impl Subject {
         if let Some(kept) = store.read(&key) {
             return Found::Made(held(key, kept));
         }
+        let draft = format!("draft {key}");
+        if wanted == Wanted::Draft && known.as_ref() == Some(&draft) {
+            return Found::SameDraft;
+        }
         if wanted == Wanted::Comparison {
             return Found::Other;
         }
@@ -138,7 +144,7 @@ impl Subject {
         drop(last);
         if wanted == Wanted::Draft {
             match method.draft(&world, settings, job) {
-                Some(Ok(draft)) => return Found::Drafted(held(format!("draft {key}"), draft)),
+                Some(Ok(made)) => return Found::Drafted(held(draft, made)),
                 Some(Err(error)) => return Found::Failed(error),
                 None => {}
             }
@@ -256,8 +262,10 @@ impl Preparation {
         self.state = Some(match found {
             Found::Same => State::Fresh,
             Found::Other => State::Stale,
-            Found::Drafted(held) => {
-                self.held = Some(held);
+            found @ (Found::Drafted(_) | Found::SameDraft) => {
+                if let Found::Drafted(held) = found {
+                    self.held = Some(held);
+                }
                 self.full_at = Some(Instant::now() + REST);
                 State::Draft
             }
@@ -388,6 +396,61 @@ mod tests {
         // Another method has none of it, and always the same nothing.
         let nothing = || preparation.prepared(&burnish_core::reference::Reference).unwrap();
         assert!(nothing().is_nothing() && Arc::ptr_eq(&nothing(), &nothing()));
+    }
+
+    /// Counts lamps; a draft says that there is one.
+    #[derive(Debug)]
+    struct Drafting;
+
+    impl Method for Drafting {
+        fn info(&self) -> &'static MethodInfo {
+            &INFO
+        }
+
+        fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+            Lamps.prepare(world, settings, job)
+        }
+
+        fn drafts(&self) -> bool {
+            true
+        }
+
+        fn draft(&self, _: &World, _: &Settings, _: &Handle) -> Option<Result<Prepared, MethodError>> {
+            Some(Ok(Prepared::nothing().with("count", vec![1_u32])))
+        }
+    }
+
+    #[test]
+    fn a_draft_comes_first_and_the_whole_when_the_scene_rests() {
+        let ctx = egui::Context::default();
+        let mut scene = gallery::open("workbench").unwrap();
+        scene.lights.push(scene.lights[0].clone());
+        scene.lights.push(scene.lights[0].clone());
+        let (scene, mut preparation) = (Arc::new(scene), Preparation::default());
+        let count =
+            |preparation: &Preparation| preparation.prepared(&Drafting).map(|prepared| prepared.whole("count")[0]);
+        let until = |preparation: &mut Preparation, scene: &Arc<Scene>, state: State| {
+            while preparation.state() != state {
+                preparation.follow(&Drafting, Settings::new(INFO.params), scene, &ctx);
+                std::thread::yield_now();
+            }
+        };
+        until(&mut preparation, &scene, State::Draft);
+        assert!(count(&preparation) == Some(1) && preparation.is_busy(), "the whole is still to come");
+        let held = preparation.prepared(&Drafting).unwrap();
+        // An edit of what is not read leaves the draft in use.
+        let mut edited = Scene::clone(&scene);
+        edited.materials[0].roughness = 0.9;
+        let edited = Arc::new(edited);
+        preparation.follow(&Drafting, Settings::new(INFO.params), &edited, &ctx);
+        until(&mut preparation, &edited, State::Draft);
+        assert!(Arc::ptr_eq(&held, &preparation.prepared(&Drafting).unwrap()));
+        until(&mut preparation, &edited, State::Fresh);
+        assert!(count(&preparation) >= Some(3) && !preparation.is_busy());
+        // Sides of a comparison show no drafts.
+        let mut always = Preparation::default().always_anew();
+        until(&mut always, &scene, State::Fresh);
+        assert!(count(&always) >= Some(3));
     }
 
     #[test]

@@ -27,7 +27,8 @@ pub fn trials() -> Vec<Trial> {
         let name = format!("classical is the same on device and processor: {scene}, samples {samples}");
         trial(name.leak(), &[Need::Gpu], move || same(scene, samples))
     });
-    let searches = [("secant", "0"), ("secant", "16"), ("box", "0"), ("march", "16"), ("classical", "0")];
+    let searches =
+        [("secant", "0"), ("secant", "16"), ("box", "0"), ("march", "16"), ("pyramid", "16"), ("classical", "0")];
     let impostor = searches.into_iter().map(|(solver, samples)| {
         let name = format!("impostor is the same on device and processor: {solver}, samples {samples}");
         trial(name.leak(), &[Need::Gpu], move || {

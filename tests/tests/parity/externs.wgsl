@@ -68,3 +68,36 @@ fn area_cube_texel(index: u32) -> mat3x4f {
     let spread = 0.05 + 0.04 * sin(0.3 * i);
     return mat3x4f(vec4f(place, spread), vec4f(-1.2 * normalize(place), 0.95), radiance);
 }
+
+// Faces with 12 texels: a wall, a quarter something nearer, a corner of the sky.
+fn pyramid_face() -> u32 {
+    return 12u;
+}
+
+fn parity_kept(side: u32, x: u32, y: u32) -> f32 {
+    if x >= 6u && y >= 6u {
+        return select(0.9, 0.0, x >= 9u);
+    }
+    return 0.5 + 0.01 * f32(side + x) + 0.005 * f32(y);
+}
+
+fn pyramid_corners(side: u32, x: u32, y: u32) -> vec4f {
+    return vec4f(
+        parity_kept(side, x, y), parity_kept(side, x + 1u, y),
+        parity_kept(side, x, y + 1u), parity_kept(side, x + 1u, y + 1u),
+    );
+}
+
+// Wider than what is stored, which costs lookups and changes no place.
+fn pyramid_bounds(level: u32, side: u32, x: u32, y: u32) -> vec2f {
+    let low = vec2u(x, y) << vec2u(level);
+    let high = min(low + vec2u(1u << level), vec2u(11u));
+    var bounds = vec2f(1e30, 0.0);
+    for (var v = low.y; v <= high.y; v++) {
+        for (var u = low.x; u <= high.x; u++) {
+            let kept = parity_kept(side, u, v);
+            bounds = vec2f(min(bounds.x, 0.98 * kept), max(bounds.y, 1.02 * kept));
+        }
+    }
+    return bounds;
+}

@@ -1,6 +1,7 @@
 //! Distance impostors.
 
 use burnish_core::lighting::impostor::{self, Effort, Extent, Solver};
+use burnish_core::lighting::probe::{DistanceCube, bounds};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 use crate::grid::v4;
@@ -27,6 +28,24 @@ pub fn cases() -> Vec<Case> {
         .with(HELPERS)
         // A secant divides by the difference of two ratios: what they are rounded by grows a hundredfold.
         .within(Tolerance { relative: 2e-3, absolute: 2e-4 }),
+        Case::new(
+            "impostor: where rays meet what a cube keeps, by its bounds",
+            &impostor::WGSL,
+            BY_BOUNDS,
+            ways,
+            |x| {
+                let inverse = kept();
+                let bounds = bounds(FACE, &inverse);
+                let cube = DistanceCube::new(FACE, &inverse, &bounds);
+                let effort = Effort { solver: Solver::Pyramid, refinements: 0, steps: 200, tolerance: 0.01 };
+                let (p, r) = (x[0].xyz(), x[1].xyz());
+                let found = impostor::solve(&cube, &WIDE, p, r, &effort);
+                let hit = if found.is_hit { 1.0 } else { 0.0 };
+                [Vec4::new(found.t, found.ratio, hit, 0.0)]
+            },
+        )
+        .with(HELPERS)
+        .within(Tolerance { relative: 1e-4, absolute: 1e-4 }),
         Case::new("impostor: levels for surfaces nearer than the middle", &impostor::WGSL, LEVEL, levels, |x| {
             [Vec4::new(impostor::level(x[0].x, x[0].y, x[0].z, x[0].w), 0.0, 0.0, 0.0)]
         })
@@ -45,6 +64,30 @@ fn parity_extent() -> ImpostorExtent {
 }
 ";
 
+/// Texels along an edge in externs.wgsl.
+const FACE: u32 = 12;
+/// What the distances there say as a whole.
+const WIDE: Extent = Extent { near: 1.0, far: 3.5, radius: 1.5, low: Vec3::splat(-2.0), high: Vec3::splat(2.0) };
+
+/// Twin of `parity_kept`.
+fn kept() -> Vec<f32> {
+    let texel = |i: u32| {
+        let (side, y, x) = (i / (FACE * FACE), i / FACE % FACE, i % FACE);
+        match (x, y) {
+            (9.., 6..) => 0.0,
+            (6.., 6..) => 0.9,
+            _ => 0.5 + 0.01 * (side + x) as f32 + 0.005 * y as f32,
+        }
+    };
+    (0..6 * FACE * FACE).map(texel).collect()
+}
+
+const BY_BOUNDS: &str = "
+    let extent = ImpostorExtent(1.0, 3.5, 1.5, vec3f(-2.0), vec3f(2.0));
+    let found = impostor_solve(extent, x[0].xyz, x[1].xyz, ImpostorEffort(IMPOSTOR_PYRAMID, 0u, 200u, 0.01));
+    y[0] = vec4f(found.t, found.ratio, select(0.0, 1.0, found.is_hit), 0.0);
+";
+
 const SOLVE: &str = "
     let effort = ImpostorEffort(u32(x[0].w), u32(x[1].w), 24u, 1e9);
     let found = impostor_solve(parity_extent(), x[0].xyz, x[1].xyz, effort);
@@ -56,24 +99,37 @@ const LEVEL: &str = "
     y[0] = vec4f(impostor_level(x[0].x, x[0].y, x[0].z, x[0].w), 0.0, 0.0, 0.0);
 ";
 
-/// Points in the room, in its middle, near a wall and outside, by every solver.
+/// In the room, in its middle, near a wall and outside.
+const POINTS: [Vec3; 6] = [
+    Vec3::ZERO,
+    Vec3::new(0.3, -0.2, 0.4),
+    Vec3::new(-0.5, 0.45, 0.1),
+    Vec3::new(0.1, 0.8, -0.6),
+    Vec3::new(-0.85, 0.0, 0.2),
+    Vec3::new(3.0, 0.5, 0.0),
+];
+
+/// All around.
+fn direction(i: u32) -> Vec3 {
+    let y = 1.0 - (i as f32 + 0.5) / 60.0;
+    let (sin, cos) = (2.399_963 * i as f32).sin_cos();
+    let level = (1.0 - y * y).sqrt();
+    Vec3::new(level * cos, y, level * sin).normalize()
+}
+
+/// From the points, all but the middle, whose rays stay in one direction.
+fn ways() -> Vec<[Vec4; 2]> {
+    let all = POINTS.into_iter().skip(1).flat_map(|point| (0..120).map(move |i| (point, direction(i))));
+    all.map(|(point, direction)| [point.extend(0.0), direction.extend(0.0)]).collect()
+}
+
+/// From the points by every solver that needs distances alone.
 fn rays() -> Vec<[Vec4; 2]> {
-    let points = [
-        Vec3::ZERO,
-        Vec3::new(0.3, -0.2, 0.4),
-        Vec3::new(-0.5, 0.45, 0.1),
-        Vec3::new(0.1, 0.8, -0.6),
-        Vec3::new(-0.85, 0.0, 0.2),
-        Vec3::new(3.0, 0.5, 0.0),
-    ];
     let mut inputs = Vec::new();
-    for (number, _) in Solver::ALL.iter().enumerate() {
-        for point in points {
+    for (number, _) in Solver::ALL.iter().enumerate().filter(|(_, solver)| **solver != Solver::Pyramid) {
+        for point in POINTS {
             for i in 0..120 {
-                let y = 1.0 - (i as f32 + 0.5) / 60.0;
-                let (sin, cos) = (2.399_963 * i as f32).sin_cos();
-                let level = (1.0 - y * y).sqrt();
-                let direction = Vec3::new(level * cos, y, level * sin).normalize();
+                let direction = direction(i);
                 // Later secant steps go between places that are one already.
                 inputs.push([point.extend(number as f32), direction.extend((i % 3) as f32)]);
             }

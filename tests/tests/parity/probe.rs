@@ -28,7 +28,7 @@ pub fn cases() -> Vec<Case> {
             &probe::WGSL,
             DISTANCE,
             directions,
-            |x| [Vec4::new(DistanceCube::new(FACE, &inverse()).distance(x[0].xyz()), 0.0, 0.0, 0.0)],
+            |x| [Vec4::new(DistanceCube::new(FACE, &inverse(), &[]).distance(x[0].xyz()), 0.0, 0.0, 0.0)],
         )
         .with(HELPERS),
         Case::new("impostor: colours of a search", &impostor::WGSL, SHOWN, searches, |x| {

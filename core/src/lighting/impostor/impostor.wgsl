@@ -10,6 +10,7 @@ const IMPOSTOR_SECANT_FROM_POINT: u32 = 5u;
 const IMPOSTOR_FALSE_POSITION: u32 = 6u;
 const IMPOSTOR_MIXED: u32 = 7u;
 const IMPOSTOR_MARCH: u32 = 8u;
+const IMPOSTOR_PYRAMID: u32 = 9u;
 
 // Differences of ratios below this say nothing about where they meet 1.
 const IMPOSTOR_EPSILON: f32 = 1e-6;
@@ -229,6 +230,23 @@ fn impostor_march(extent: ImpostorExtent, x: vec3f, r: vec3f, effort: ImpostorEf
     return ImpostorFound(0.0, 0.0, lookups, false);
 }
 
+// By the bounds of distances.
+fn impostor_pyramid(extent: ImpostorExtent, x: vec3f, r: vec3f, effort: ImpostorEffort) -> ImpostorFound {
+    let span = impostor_span(extent, x, r);
+    if !(span.y > span.x) {
+        return impostor_miss();
+    }
+    // From where to where the ray is nearer to the middle than anything else.
+    let b = dot(x, r);
+    let near = 0.999 * extent.near;
+    let inner = b * b - dot(x, x) + near * near;
+    let half = sqrt(max(inner, 0.0));
+    let gap = select(vec2f(0.0), vec2f(-half - b, half - b), inner > 0.0);
+    let most = PYRAMID_LOOKUPS_PER_STEP * max(effort.steps, 1u);
+    let found = pyramid_search(x, r, span.x, span.y, gap, most, effort.tolerance);
+    return ImpostorFound(found.t, found.ratio, found.lookups, found.is_hit);
+}
+
 // Follows the ray from `x` in the unit direction `r`.
 fn impostor_solve(extent: ImpostorExtent, x: vec3f, r: vec3f, effort: ImpostorEffort) -> ImpostorFound {
     switch effort.solver {
@@ -243,6 +261,9 @@ fn impostor_solve(extent: ImpostorExtent, x: vec3f, r: vec3f, effort: ImpostorEf
         }
         case IMPOSTOR_MARCH: {
             return impostor_march(extent, x, r, effort);
+        }
+        case IMPOSTOR_PYRAMID: {
+            return impostor_pyramid(extent, x, r, effort);
         }
         default: {
             return impostor_steps(extent, x, r, effort);

@@ -35,7 +35,7 @@ impl<D: Distances> Walk<'_, D> {
     }
 
     /// The part of the ray in which surfaces may be: not nearer to the middle than the nearest, not farther than the farthest.
-    fn span(&self) -> Option<(f32, f32)> {
+    pub(super) fn span(&self) -> Option<(f32, f32)> {
         let (b, length2) = (self.x.dot(self.r), self.x.length_squared());
         let root = |radius: f32| b * b - length2 + radius * radius;
         // A little beyond, so that the farthest surface has something behind it.

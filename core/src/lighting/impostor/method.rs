@@ -27,7 +27,7 @@ const SOLVER: ParamSpec = ParamSpec {
     unit: "",
     kind: ParamKind::Choice { options: &Solver::IDS, default: Solver::Secant as usize },
     help: "How the place that a reflection meets is searched. classical: not at all; sphere, box: a simple body stands for the \
-           surroundings; march finds what the others lose at silhouettes.",
+           surroundings; march and pyramid find what the others lose at silhouettes.",
     affects: Affects::Frame,
 };
 
@@ -45,7 +45,7 @@ const STEPS: ParamSpec = ParamSpec {
     label: "Steps",
     unit: "",
     kind: ParamKind::Integer { min: 1, max: 256, default: 24 },
-    help: "Places that march looks at along a ray.",
+    help: "Places that march looks at along a ray; pyramid looks up four times as many at most, and seldom a dozen.",
     affects: Affects::Frame,
 };
 
@@ -119,7 +119,7 @@ static INFO: MethodInfo = MethodInfo {
         emission: Cover::None,
     },
     reads: Reads { probes: true, ..Reads::ALL },
-    revision: 2,
+    revision: 3,
 };
 
 impl Method for Impostor {
@@ -239,8 +239,7 @@ struct Localised<'a> {
 
 impl Localised<'_> {
     fn follow(&self, direction: Vec3) -> Found {
-        let distances = |d: Vec3| self.probe.distances.distance(d);
-        solve(&distances, &self.probe.extent, self.x, direction, &self.effort)
+        solve(&self.probe.distances, &self.probe.extent, self.x, direction, &self.effort)
     }
 
     /// Where to look, and how much nearer than to the middle the place is: `t / distance`, 1 without a place.

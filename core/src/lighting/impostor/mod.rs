@@ -9,6 +9,7 @@ mod march;
 mod method;
 mod placement;
 mod proxy;
+pub mod pyramid;
 mod secant;
 mod show;
 mod study;
@@ -18,6 +19,7 @@ mod tests;
 use glam::Vec3;
 
 use crate::leaf::Leaf;
+use crate::lighting::probe::DistanceCube;
 
 pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, show, sites};
 pub use placement::{Placement, place};
@@ -30,7 +32,7 @@ pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 pub static WGSL: Leaf = Leaf {
     name: "impostor",
     source: include_str!("impostor.wgsl"),
-    needs: &[],
+    needs: &[&pyramid::WGSL],
     externs: "fn impostor_distance(direction: vec3f) -> f32 { return 1.0; }",
 };
 
@@ -52,6 +54,8 @@ pub const FALSE_POSITION: u32 = 6;
 pub const MIXED: u32 = 7;
 /// Number of [`Solver::March`].
 pub const MARCH: u32 = 8;
+/// Number of [`Solver::Pyramid`].
+pub const PYRAMID: u32 = 9;
 
 /// Differences of ratios below this say nothing about where they meet 1.
 pub const EPSILON: f32 = 1e-6;
@@ -79,11 +83,13 @@ pub enum Solver {
     Mixed = MIXED,
     /// Steps along the ray until it goes through a surface, then refined.
     March = MARCH,
+    /// Cell by cell of a pyramid of bounds to the first crossing of a surface, which is exact.
+    Pyramid = PYRAMID,
 }
 
 impl Solver {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Solver; 9] = [
+    pub const ALL: [Solver; 10] = [
         Solver::Classical,
         Solver::Sphere,
         Solver::Box,
@@ -93,11 +99,12 @@ impl Solver {
         Solver::FalsePosition,
         Solver::Mixed,
         Solver::March,
+        Solver::Pyramid,
     ];
 
     /// Their names in files and on the command line.
-    pub const IDS: [&'static str; 9] = {
-        let mut ids = [""; 9];
+    pub const IDS: [&'static str; 10] = {
+        let mut ids = [""; 10];
         let mut i = 0;
         while i < ids.len() {
             ids[i] = Solver::ALL[i].id();
@@ -118,6 +125,7 @@ impl Solver {
             Solver::FalsePosition => "false-position",
             Solver::Mixed => "mixed",
             Solver::March => "march",
+            Solver::Pyramid => "pyramid",
         }
     }
 }
@@ -144,7 +152,7 @@ pub struct Effort {
     pub solver: Solver,
     /// Refinements after the first guesses; of a place that marching found.
     pub refinements: u32,
-    /// Steps of a march.
+    /// Steps of a march; [`Solver::Pyramid`] looks up four times as many at most.
     pub steps: u32,
     /// How far the ratio of [`Found`] may be from 1 for a place on a surface, above 0.
     pub tolerance: f32,
@@ -173,10 +181,32 @@ impl Found {
     }
 }
 
-/// Distances of the surroundings: a unit direction to metres, 0 for the sky.
-pub trait Distances: Fn(Vec3) -> f32 {}
+/// Distances of the surroundings.
+pub trait Distances {
+    /// Of a unit direction, metres; 0 for the sky.
+    fn distance(&self, direction: Vec3) -> f32;
 
-impl<F: Fn(Vec3) -> f32> Distances for F {}
+    /// As texels with bounds, where they are kept so: [`Solver::Pyramid`] marches without.
+    fn cube(&self) -> Option<DistanceCube<'_>> {
+        None
+    }
+}
+
+impl<F: Fn(Vec3) -> f32> Distances for F {
+    fn distance(&self, direction: Vec3) -> f32 {
+        self(direction)
+    }
+}
+
+impl Distances for DistanceCube<'_> {
+    fn distance(&self, direction: Vec3) -> f32 {
+        DistanceCube::distance(self, direction)
+    }
+
+    fn cube(&self) -> Option<DistanceCube<'_>> {
+        Some(*self)
+    }
+}
 
 /// A ray through the surroundings, and the place that is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -198,13 +228,13 @@ impl<D: Distances> Walk<'_, D> {
     fn probe(&self, t: f32) -> Probe {
         let p = self.x + t * self.r;
         let length = p.length();
-        let distance = (self.distances)(if length > 1e-20 { p / length } else { self.r });
+        let distance = self.distances.distance(if length > 1e-20 { p / length } else { self.r });
         Probe { t, ratio: if distance > 0.0 { length / distance } else { 0.0 } }
     }
 
     /// Distance of the surface in the direction of the ray; of the farthest where there is sky.
     fn reach(&self) -> f32 {
-        let distance = (self.distances)(self.r);
+        let distance = self.distances.distance(self.r);
         if distance > 0.0 { distance } else { self.extent.far }
     }
 
@@ -233,6 +263,10 @@ pub fn solve(distances: &impl Distances, extent: &Extent, x: Vec3, r: Vec3, effo
         Solver::FalsePosition => judged(walk.false_position(0.0, effort.refinements)),
         Solver::Mixed => judged(walk.false_position(walk.perpendicular(), effort.refinements)),
         Solver::March => walk.march(effort),
+        Solver::Pyramid => match distances.cube() {
+            Some(cube) => walk.pyramid(&cube, effort),
+            None => walk.march(effort),
+        },
     }
 }
 

@@ -126,7 +126,7 @@ fn error(around: &World, points: &[(Vec3, Vec3)], places: &[Vec3], effort: &Effo
             let z = (u.x + 0.5 / RAYS as f32).min(1.0);
             let level = (1.0 - z * z).max(0.0).sqrt();
             let r = frame.to_world(Vec3::new(level * cos, level * sin, z));
-            let found = solve(&|d: Vec3| seen.distances().distance(d), &seen.extent, x, r, effort);
+            let found = solve(&seen.distances(), &seen.extent, x, r, effort);
             let wanted = around.distance(*p + 1e-4 * r, r).map_or(r, |t| x + t * r);
             apart(found.direction(x, r), wanted)
         };

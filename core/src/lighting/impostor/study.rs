@@ -74,7 +74,7 @@ pub fn hit_errors(prepared: &Prepared, rays: &[MirrorRay], effort: &Effort) -> H
         let about = probes.about(ray.instance, ray.position);
         let (probe, _) = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let x = ray.position - probe.middle;
-        let found = solve(&|d: Vec3| probe.distances.distance(d), &probe.extent, x, ray.direction, effort);
+        let found = solve(&probe.distances, &probe.extent, x, ray.direction, effort);
         let wanted = ray.met.map_or(ray.direction, |t| x + t * ray.direction);
         let degrees = apart(found.direction(x, ray.direction), wanted);
         let off = ray.is_seen && ray.met.is_some_and(|t| (found.t - t).abs() > OFF * wanted.length());

@@ -173,7 +173,7 @@ fn whatever_the_surroundings_a_place_is_finite_and_not_behind_the_point() {
             let steps = [0, 1, 7, 20][i as usize / 9 % 4];
             let effort = Effort { solver, refinements: i / 9 % 6, steps, tolerance: 0.01 };
             let extent = Extent { near: 0.1, far: 2.0, ..ROOM };
-            let found = solve(&|d| nonsense(kind, d), &extent, x, r, &effort);
+            let found = solve(&|d: Vec3| nonsense(kind, d), &extent, x, r, &effort);
             let direction = found.direction(x, r);
             assert!(found.t.is_finite() && found.t >= 0.0, "{kind} {effort:?} {x} {r}: {found:?}");
             assert!((direction.length() - 1.0).abs() < 1e-4, "{kind} {effort:?} {x} {r}: {direction}");

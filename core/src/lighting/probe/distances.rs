@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::Cells;
 use crate::lighting::cube_map::on_face;
 use crate::math::cube::{self, mirrored};
 
@@ -14,12 +15,13 @@ pub const JUMP: f32 = 1.15;
 pub struct DistanceCube<'a> {
     face: u32,
     inverse: &'a [f32],
+    bounds: &'a [f32],
 }
 
 impl<'a> DistanceCube<'a> {
-    /// With `face` texels along an edge; what is missing is sky.
-    pub fn new(face: u32, inverse: &'a [f32]) -> DistanceCube<'a> {
-        DistanceCube { face: face.max(1), inverse }
+    /// With `face` texels along an edge, and their [`bounds`](super::bounds); missing texels are sky, missing bounds bound nothing.
+    pub fn new(face: u32, inverse: &'a [f32], bounds: &'a [f32]) -> DistanceCube<'a> {
+        DistanceCube { face: face.max(1), inverse, bounds }
     }
 
     /// Texels along an edge.
@@ -48,20 +50,32 @@ impl<'a> DistanceCube<'a> {
         let last = n.saturating_sub(2) as f32;
         let low = at.floor().clamp(Vec2::ZERO, Vec2::splat(last));
         let t = at - low;
-        let texel = |dx: u32, dy: u32| {
-            let (x, y) = ((low.x as u32 + dx).min(n - 1), (low.y as u32 + dy).min(n - 1));
-            self.inverse.get(((side * n + y) * n + x) as usize).copied().unwrap_or(0.0)
-        };
-        let corners = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
+        let corners = self.corners(side, low.x as u32, low.y as u32);
         let [least, most] = [corners.into_iter().fold(f32::MAX, f32::min), corners.into_iter().fold(0.0, f32::max)];
         let inverse = if least > 0.0 && most <= JUMP * least {
             let [a, b, c, d] = corners;
             let (top, bottom) = (a + (b - a) * t.x, c + (d - c) * t.x);
             top + (bottom - top) * t.y
         } else {
-            texel(u32::from(t.x >= 0.5), u32::from(t.y >= 0.5))
+            corners[usize::from(t.x >= 0.5) + 2 * usize::from(t.y >= 0.5)]
         };
         if inverse > 0.0 { stretch(p) / inverse } else { 0.0 }
+    }
+
+    /// What is kept at the corners of a quad, which lies between the middles of four texels: by rows from its first texel on.
+    pub fn corners(&self, side: u32, x: u32, y: u32) -> [f32; 4] {
+        let n = self.face;
+        let texel = |x: u32, y: u32| {
+            let index = (side * n + y.min(n - 1)) * n + x.min(n - 1);
+            self.inverse.get(index as usize).copied().unwrap_or(0.0)
+        };
+        [texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1)]
+    }
+
+    /// Least and greatest of what is kept in a cell of a level from 1 on, and a little beyond.
+    pub fn bounds(&self, level: u32, side: u32, x: u32, y: u32) -> [f32; 2] {
+        let first = 2 * Cells::new(self.face).index(level, side, x, y);
+        self.bounds.get(first..first + 2).map_or([0.0, f32::INFINITY], |pair| [pair[0], pair[1]])
     }
 }
 
@@ -86,7 +100,7 @@ mod tests {
         let room = |d: Vec3| Vec3::new(1.0, 2.0, 1.5).map(|half| half) / d.abs();
         let wall = |d: Vec3| room(d).min_element();
         let inverse = cube_of(32, |d| Some(wall(d)));
-        let cube = DistanceCube::new(32, &inverse);
+        let cube = DistanceCube::new(32, &inverse, &[]);
         let mut random = Random::new(1);
         let (mut exact, all) = (0, 4000);
         for _ in 0..all {
@@ -105,7 +119,7 @@ mod tests {
     #[test]
     fn the_sky_has_no_distance_and_no_edge_of_its_own() {
         let inverse = cube_of(16, |d| (d.y < 0.0).then_some(2.0));
-        let cube = DistanceCube::new(16, &inverse);
+        let cube = DistanceCube::new(16, &inverse, &[]);
         for i in 0..500 {
             let y = 1.0 - (i as f32 + 0.5) / 250.0;
             let (sin, cos) = (2.4 * i as f32).sin_cos();
@@ -114,6 +128,6 @@ mod tests {
             // At the horizon the depth of the nearest texel stands for half a texel around it: 3 % at 16 texels.
             assert!(found == 0.0 || (found - 2.0).abs() < 0.08, "{d}: {found}");
         }
-        assert_eq!((cube.distance(Vec3::Y), DistanceCube::new(0, &[]).distance(Vec3::X)), (0.0, 0.0));
+        assert_eq!((cube.distance(Vec3::Y), DistanceCube::new(0, &[], &[]).distance(Vec3::X)), (0.0, 0.0));
     }
 }

@@ -4,6 +4,7 @@
 //! [`Sites`] says where the probes of a scene stand, [`prepare`] records what is seen from them, [`Probes`] finds those that
 //! know the surroundings of a point, with weights that change without a seam.
 
+mod bounds;
 mod distances;
 pub(super) mod seen;
 mod sites;
@@ -19,6 +20,7 @@ use crate::leaf::Leaf;
 use crate::lighting::{Prepared, impostor::Extent};
 use crate::math;
 
+pub use bounds::{Cells, bounds};
 pub use distances::{DistanceCube, JUMP};
 pub use seen::surroundings;
 pub use sites::{Defaults, MOST, Site, Sites};
@@ -80,7 +82,7 @@ impl<'a> Probes<'a> {
             maps,
             middle: maps.vector("probe", 0),
             extent: Extent { near, far, radius, low, high },
-            distances: DistanceCube::new(*maps.whole("face").first()?, maps.floats("distances")),
+            distances: DistanceCube::new(*maps.whole("face").first()?, maps.floats("distances"), maps.floats("bounds")),
         })
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use super::bounds::bounds;
 use super::distances::DistanceCube;
 use super::seen::surroundings;
 use super::{Site, Sites};
@@ -48,6 +49,7 @@ pub struct Surroundings {
     pub extent: Extent,
     face: u32,
     inverse: Vec<f32>,
+    bounds: Vec<f32>,
     /// Shares of the directions that see the sky, and surfaces from behind.
     shares: [f32; 2],
 }
@@ -56,19 +58,19 @@ impl Surroundings {
     /// What is seen from a place, with `face` texels along the edge of a face.
     pub fn seen(around: &World, middle: Vec3, face: u32) -> Surroundings {
         let (inverse, shares) = distances(around, middle, face);
-        Surroundings { middle, extent: extent(&inverse, face), face, inverse, shares }
+        Surroundings { middle, extent: extent(&inverse, face), face, bounds: bounds(face, &inverse), inverse, shares }
     }
 
     /// The distances.
     pub fn distances(&self) -> DistanceCube<'_> {
-        DistanceCube::new(self.face, &self.inverse)
+        DistanceCube::new(self.face, &self.inverse, &self.bounds)
     }
 }
 
 /// Records one; `around` is the scene without what it serves.
 fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodError> {
     let Site { middle, half, face, .. } = *site;
-    let Surroundings { inverse, extent, shares, .. } = Surroundings::seen(around, middle, face);
+    let Surroundings { inverse, bounds, extent, shares, .. } = Surroundings::seen(around, middle, face);
     let map = match site.source {
         ProbeSource::Traced => panorama(around, middle, (face, site.paths), job)?,
         ProbeSource::Raster => {
@@ -81,6 +83,7 @@ fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodE
     Ok(classical::prepare_map(&map, job)?
         .with("served", site.served.clone())
         .with("distances", inverse)
+        .with("bounds", bounds)
         .with("probe", numbers.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>())
         .with("face", vec![face])
         .with("shares", shares.to_vec()))
@@ -102,7 +105,7 @@ fn distances(around: &World, middle: Vec3, face: u32) -> (Vec<f32>, [f32; 2]) {
 
 /// What the distances say as a whole; a room of 1 m where there is only sky, which no ray meets.
 fn extent(inverse: &[f32], face: u32) -> Extent {
-    let cube = DistanceCube::new(face, inverse);
+    let cube = DistanceCube::new(face, inverse, &[]);
     let (mut near, mut far, mut sum, mut count) = (f32::MAX, 0.0f32, 0.0, 0u32);
     let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
     for i in 0..6 * face * face {

@@ -10,6 +10,8 @@
 @group(2) @binding(7) var inverse_depths: texture_2d_array<f32>;
 @group(2) @binding(8) var<uniform> probe: ProbeData;
 @group(2) @binding(9) var<uniform> probe_places: array<vec4f, 64>;
+// Least and greatest of the inverse depths over cells of 2, 4, 8 ... quads.
+@group(2) @binding(12) var inverse_bounds: texture_2d_array<f32>;
 @group(3) @binding(0) var<uniform> given: EffortData;
 
 fn ggx_albedo_entry(index: u32) -> f32 {
@@ -31,6 +33,21 @@ fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 {
 
 fn impostor_distance(direction: vec3f) -> f32 {
     return probe_distance(probe.face, direction);
+}
+
+fn pyramid_face() -> u32 {
+    return probe.face;
+}
+
+fn pyramid_corners(side: u32, x: u32, y: u32) -> vec4f {
+    return vec4f(
+        probe_inverse_depth(side, x, y), probe_inverse_depth(side, x + 1u, y),
+        probe_inverse_depth(side, x, y + 1u), probe_inverse_depth(side, x + 1u, y + 1u),
+    );
+}
+
+fn pyramid_bounds(level: u32, side: u32, x: u32, y: u32) -> vec2f {
+    return textureLoad(inverse_bounds, vec2u(x, y), side, level - 1u).xy;
 }
 
 fn extent() -> ImpostorExtent {

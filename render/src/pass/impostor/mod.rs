@@ -154,6 +154,7 @@ impl ImpostorPass {
             places.as_entire_binding(),
             probe.coarse.as_entire_binding(),
             area_tables.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&probe.inverse_bounds),
         ];
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -241,6 +242,7 @@ fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             buffer_entry(9, fragment, wgpu::BufferBindingType::Uniform),
             buffer_entry(10, fragment, storage),
             buffer_entry(11, fragment, storage),
+            texture_entry(12, float(false), wgpu::TextureViewDimension::D2Array),
         ],
     })
 }

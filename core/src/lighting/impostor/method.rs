@@ -45,7 +45,7 @@ const STEPS: ParamSpec = ParamSpec {
     label: "Steps",
     unit: "",
     kind: ParamKind::Integer { min: 1, max: 256, default: 24 },
-    help: "Places that march looks at along a ray; pyramid looks up four times as many at most, and seldom a dozen.",
+    help: "Places that march looks at along a ray; pyramid looks up four times as many at most, about a dozen in the mean.",
     affects: Affects::Frame,
 };
 

@@ -177,12 +177,14 @@ mod tests {
         let copy = document.duplicate_probe(&name).unwrap();
         assert_ne!(name, copy);
         let probe = document.probe_mut(&copy).unwrap();
-        (probe.position, probe.resolution, probe.serves) = (Some([0.0, f64::NAN, 1e30]), Some(9), vec!["gone".into()]);
-        probe.extent = Some([-1.0, f64::INFINITY, 2.0]);
+        (probe.position, probe.resolution, probe.serves) = (Some([0.0, -1e30, 1e30]), Some(9), vec!["gone".into()]);
+        probe.extent = Some([-1.0, 1e300, 2.0]);
         probe.set_source(ProbeSource::Raster);
         assert_eq!(document.rename_probe(&copy, &name), format!("{name} 2"), "a name stands for one probe");
         let text = serde_json::to_string(&document).unwrap();
         assert_eq!(serde_json::from_str::<Document>(&text).unwrap(), document);
+        // JSON has no word for it.
+        document.probe_mut(&format!("{name} 2")).unwrap().position = Some([0.0, f64::NAN, 1e30]);
         let resolved = resolve(&document, &opened.sources, &mut Curves::default());
         assert_eq!(resolved.notices.len(), 1, "{:?}", resolved.notices);
         assert!(resolved.scene.validate().is_ok());

@@ -100,6 +100,7 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("AREA_CUBE_FEW", AREA_CUBE_FEW),
     ("AREA_CUBE_CORRECTED", AREA_CUBE_CORRECTED),
     ("AREA_CUBE_NORMALIZED", AREA_CUBE_NORMALIZED),
+    ("AREA_CUBE_MIDDLES", AREA_CUBE_MIDDLES),
     ("HIT_NONE", HIT_NONE),
 ];
 
@@ -150,6 +151,8 @@ pub const AREA_CUBE_FEW: u32 = 1;
 pub const AREA_CUBE_CORRECTED: u32 = 2;
 /// Flag of [`EffortData`]: even light comes out even.
 pub const AREA_CUBE_NORMALIZED: u32 = 4;
+/// Flag of [`EffortData`]: lobes are taken at the middles of caps.
+pub const AREA_CUBE_MIDDLES: u32 = 8;
 
 shared! {
     /// What changes from frame to frame.

@@ -211,6 +211,7 @@ struct ProbeData {
 const AREA_CUBE_FEW: u32 = 1u;
 const AREA_CUBE_CORRECTED: u32 = 2u;
 const AREA_CUBE_NORMALIZED: u32 = 4u;
+const AREA_CUBE_MIDDLES: u32 = 8u;
 
 // How the surroundings of a probe are looked up.
 struct EffortData {

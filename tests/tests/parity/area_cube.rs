@@ -45,8 +45,9 @@ pub fn cases() -> Vec<Case> {
             let s = surface::unpack(x);
             let lobe = Lobe { kind: s.lobe, alpha: s.alpha.x, masking: s.masking };
             let cap = Cap { direction: x[5].xyz(), share: x[5].w };
-            let found = glossy(&lobe, x[4].xyz(), &cap, tables::lambert(cap.share, cap.direction.z));
-            [found.extend(0.0).extend(0.0)]
+            let found = glossy(&lobe, x[4].xyz(), &cap, tables::lambert(cap.share, cap.direction.z), false);
+            let middle = glossy(&lobe, x[4].xyz(), &cap, tables::lambert(cap.share, cap.direction.z), true);
+            [found.extend(middle.x).extend(middle.y)]
         })
         .with(surface::WGSL)
         // A lobe a thousandth wide raises roundings of directions a thousandfold.
@@ -62,7 +63,12 @@ pub fn cases() -> Vec<Case> {
             let s = surface::unpack(x);
             let frame = |i: usize| Frame { t: x[i].xyz(), b: x[i + 1].xyz(), n: x[i + 2].xyz() };
             let flags = x[11].w as u32;
-            let asked = Asked { few: flags & 1 != 0, corrected: flags & 2 != 0, normalized: flags & 4 != 0 };
+            let asked = Asked {
+                few: flags & 1 != 0,
+                corrected: flags & 2 != 0,
+                normalized: flags & 4 != 0,
+                middles: flags & 8 != 0,
+            };
             let at = Looked { x: x[11].xyz(), base: x[12].xyz(), coat: x[13].xyz() };
             let numbers: Vec<f32> = (0..24).flat_map(texel).chain((0..96).flat_map(texel)).collect();
             let texels = Texels::of(&numbers, x[12].w as u32).expect("two cubes are there");
@@ -118,8 +124,9 @@ const TABLES: &str = "
 const GLOSSY: &str = "
     let s = parity_surface(x[0], x[1], x[2], x[3]);
     let lit = area_cube_lambert(x[5].w, x[5].z);
-    let found = area_cube_glossy(s.lobe, s.exponent, s.alpha.x, s.masking, x[4].xyz, x[5].xyz, x[5].w, lit);
-    y[0] = vec4f(found, 0.0, 0.0);
+    let found = area_cube_glossy(s.lobe, s.exponent, s.alpha.x, s.masking, x[4].xyz, x[5].xyz, x[5].w, lit, false);
+    let middle = area_cube_glossy(s.lobe, s.exponent, s.alpha.x, s.masking, x[4].xyz, x[5].xyz, x[5].w, lit, true);
+    y[0] = vec4f(found, middle);
 ";
 
 const NUMBERS_WGSL: &str = "
@@ -134,7 +141,7 @@ const REFLECTED: &str = "
     let base = Frame(x[5].xyz, x[6].xyz, x[7].xyz);
     let coat = Frame(x[8].xyz, x[9].xyz, x[10].xyz);
     let flags = u32(x[11].w);
-    let asked = AreaCubeAsked(u32(x[12].w), (flags & 1u) != 0u, (flags & 2u) != 0u, (flags & 4u) != 0u);
+    let asked = AreaCubeAsked(u32(x[12].w), (flags & 1u) != 0u, (flags & 2u) != 0u, (flags & 4u) != 0u, (flags & 8u) != 0u);
     let looked = AreaCubeLooked(x[11].xyz, x[12].xyz, x[13].xyz);
     y[0] = vec4f(area_cube_reflected(s, base, coat, x[4].xyz, x[4].w, looked, asked), 0.0);
 ";

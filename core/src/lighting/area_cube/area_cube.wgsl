@@ -41,6 +41,8 @@ struct AreaCubeAsked {
     few: bool,
     corrected: bool,
     normalized: bool,
+    // Lobes are taken at the middles of caps.
+    middles: bool,
 }
 
 // Where the surface is, and the unit directions in which the middle sees what the mirrored directions of base and coat meet.
@@ -148,6 +150,7 @@ fn area_cube_normals(kind: u32, alpha: f32, offset: f32, cap: f32) -> f32 {
 // What a lobe sends toward wo of a cap of radiance 1 for F = 1, and (1 - cos)^5 at the half vector. `direction` is local.
 fn area_cube_glossy(
     lobe: u32, exponent: f32, alpha: f32, masking: u32, wo: vec3f, direction: vec3f, share: f32, lit: f32,
+    middle: bool,
 ) -> vec2f {
     if !(lit > 0.0 && share > 0.0) {
         return vec2f(0.0);
@@ -167,7 +170,7 @@ fn area_cube_glossy(
     let h_length = length(h);
     let cos_theta = min(0.5 * h_length, 1.0);
     let offset = length(h.xy) / h_length * sqrt(2.0 / (1.0 + h.z / h_length));
-    let chord = min(sqrt(0.5 * share / max(cos_theta, 1e-6)), AREA_CUBE_CHORD_MAX);
+    let chord = select(min(sqrt(0.5 * share / max(cos_theta, 1e-6)), AREA_CUBE_CHORD_MAX), 0.0, middle);
     var value: f32;
     if lobe == LAYERED_GGX {
         let a = ggx_clamp_alpha(vec2f(alpha));
@@ -282,14 +285,14 @@ fn area_cube_reflected(
                 area_cube_add(&matte, texel.radiance, lit, 0.0);
             }
             if is_few == asked.few {
-                let part = area_cube_glossy(s.lobe, s.exponent, alpha, s.masking, wo, local, cap.share, lit);
+                let part = area_cube_glossy(s.lobe, s.exponent, alpha, s.masking, wo, local, cap.share, lit, asked.middles);
                 area_cube_add(&glossy, texel.radiance, part.x, part.y);
             }
         }
         if s.coat > 0.0 && is_coat == asked.few {
             let local = frame_to_local(coat, cap.direction);
             let lit = area_cube_lambert(cap.share, local.z);
-            let part = area_cube_glossy(LAYERED_GGX, 0.0, s.coat_alpha, s.masking, coat_wo, local, cap.share, lit);
+            let part = area_cube_glossy(LAYERED_GGX, 0.0, s.coat_alpha, s.masking, coat_wo, local, cap.share, lit, asked.middles);
             area_cube_add(&over, texel.radiance, part.x, part.y);
         }
     }

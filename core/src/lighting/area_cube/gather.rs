@@ -41,6 +41,8 @@ pub struct Asked {
     /// Caps neither tile the sphere nor is the mean over them exact: what they give is divided by what they would give of
     /// even light, and multiplied by what a surface reflects of that.
     pub normalized: bool,
+    /// Lobes are taken at the middles of caps instead of their mean over them: one sample a light.
+    pub middles: bool,
 }
 
 /// Where a surface is and where its reflections are seen from the middle of the cube.
@@ -89,8 +91,8 @@ impl Gathered {
 /// cosine, integrated over the cap. `cap` is local to the lobe; `lit` is its [`lambert`].
 ///
 /// The distribution of normals is averaged over half vectors: those of a cap of `w` fill `w / (4 cos)` about their middle, taken
-/// for a cap again. What varies slowly is taken at the middle of what the horizon leaves of the cap.
-pub fn glossy(lobe: &Lobe, wo: Vec3, cap: &Cap, lit: f32) -> Vec2 {
+/// for a cap again; `middle` takes their middle alone. What varies slowly is taken at the middle of what the horizon leaves of the cap.
+pub fn glossy(lobe: &Lobe, wo: Vec3, cap: &Cap, lit: f32, middle: bool) -> Vec2 {
     let Cap { direction, share } = *cap;
     if !(lit > 0.0 && share > 0.0) {
         return Vec2::ZERO;
@@ -108,7 +110,7 @@ pub fn glossy(lobe: &Lobe, wo: Vec3, cap: &Cap, lit: f32) -> Vec2 {
     let cos_theta = (0.5 * length).min(1.0);
     // 2 (1 - cos) is the square of a chord; the cosine itself has no digits left there.
     let offset = h.truncate().length() / length * (2.0 / (1.0 + h.z / length)).sqrt();
-    let chord = (0.5 * share / cos_theta.max(1e-6)).sqrt().min(CHORD_MAX);
+    let chord = if middle { 0.0 } else { (0.5 * share / cos_theta.max(1e-6)).sqrt().min(CHORD_MAX) };
     let value = match lobe.kind {
         layered::Lobe::Ggx => {
             let a = ggx::clamp_alpha(Vec2::splat(lobe.alpha));
@@ -134,6 +136,7 @@ struct Side<'a> {
     lobe: Lobe,
     frame: &'a Frame,
     wo: Vec3,
+    middles: bool,
 }
 
 impl Side<'_> {
@@ -157,7 +160,7 @@ impl Side<'_> {
         let mut sum = Gathered::default();
         for index in of {
             let (radiance, cap) = self.cap(texels, index, x, corrected);
-            let part = glossy(&self.lobe, self.wo, &cap, lambert(cap.share, cap.direction.z));
+            let part = glossy(&self.lobe, self.wo, &cap, lambert(cap.share, cap.direction.z), self.middles);
             sum.add(radiance, part.x, part.y);
         }
         sum
@@ -173,7 +176,7 @@ pub fn sums(
     at: &Looked,
     corrected: bool,
 ) -> [Gathered; 2] {
-    let side = Side { lobe, frame, wo: facing(frame.to_local(to_viewer)) };
+    let side = Side { lobe, frame, wo: facing(frame.to_local(to_viewer)), middles: false };
     [side.few(texels, at.x, at.base, corrected), side.all(texels, at.x, corrected)]
 }
 
@@ -208,7 +211,7 @@ pub fn reflected(
     };
     let wo = facing(base.to_local(to_viewer));
     let lobe = Lobe { kind: s.lobe, alpha: (s.alpha.x * s.alpha.y).sqrt(), masking: s.masking };
-    let found = gathered(&Side { lobe, frame: base, wo }, at.base);
+    let found = gathered(&Side { lobe, frame: base, wo, middles: asked.middles }, at.base);
     let light = found.scaled(layered::lobe_albedo(s, wo), asked.normalized);
     let mut value =
         reflection_occlusion(wo.z, width(s.alpha), occlusion) * layered::reflectance(s, found.cos_theta()) * light;
@@ -228,7 +231,7 @@ pub fn reflected(
     }
     let coat_wo = facing(coat_frame.to_local(to_viewer));
     let lobe = Lobe { kind: layered::Lobe::Ggx, alpha: s.coat_alpha, masking: s.masking };
-    let over = gathered(&Side { lobe, frame: coat_frame, wo: coat_wo }, at.coat);
+    let over = gathered(&Side { lobe, frame: coat_frame, wo: coat_wo, middles: asked.middles }, at.coat);
     let whole = 1.0 - albedo::loss(coat_wo, Vec2::splat(s.coat_alpha), s.masking);
     let fresnel = crate::surface::fresnel::schlick(Vec3::splat(coat::F0), 1.0, over.cos_theta());
     let top = reflection_occlusion(coat_wo.z, s.coat_alpha, occlusion) * fresnel * over.scaled(whole, asked.normalized);

@@ -60,12 +60,23 @@ const NORMALIZATION: ParamSpec = ParamSpec {
     affects: Affects::Frame,
 };
 
+const CAPS: ParamSpec = ParamSpec {
+    key: "caps",
+    label: "Caps",
+    unit: "",
+    kind: ParamKind::Choice { options: &["table", "middle"], default: 0 },
+    help: "What a glossy lobe is over a texel: its mean, from a table, or its value at the middle, which shows the lights one \
+           by one.",
+    affects: Affects::Frame,
+};
+
 /// Settings of this method: resolution and paths of its probes are those of `impostor`, the last those of `classical`.
 pub const PARAMS: &[ParamSpec] = &[
     TEXELS,
     SUM,
     CORRECTION,
     NORMALIZATION,
+    CAPS,
     impostor::RESOLUTION,
     impostor::PATHS,
     classical::PARAMS[1],
@@ -165,6 +176,7 @@ pub fn asked(settings: &Settings) -> Asked {
         few: settings.text(SUM.key).as_deref() == Some("few"),
         corrected: !is_off(&CORRECTION),
         normalized: !is_off(&NORMALIZATION),
+        middles: settings.text(CAPS.key).as_deref() == Some("middle"),
     }
 }
 

@@ -91,7 +91,7 @@ fn even_light_is_reflected_evenly_wherever_the_point_is() {
         let (surface, frame) = (point.surface(), point.base());
         for (edge, few) in [(2, false), (4, false), (16, true)] {
             let at = Looked { x: 0.9 * point.position().clamp(Vec3::NEG_ONE, Vec3::ONE), base: frame.n, coat: frame.n };
-            let asked = Asked { few, corrected: true, normalized: true };
+            let asked = Asked { few, corrected: true, normalized: true, middles: false };
             let texels = Texels::of(&texels, edge).unwrap();
             let light = reflected(&texels, &surface, frame, point.coat(), point.to_viewer(), 1.0, &at, asked);
             let albedo = point.albedo();

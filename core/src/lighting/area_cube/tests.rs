@@ -277,7 +277,7 @@ fn lobe_error(lobe: &Lobe, theta: f32, solid_angle: f32) -> [f32; 2] {
     let (mut apart, mut found, mut whole) = (0.0, 0.0, 0.0);
     for _ in 0..400 {
         let cap = Cap { direction: unit(&mut random), share: solid_angle / TAU };
-        let value = glossy(lobe, wo, &cap, tables::lambert(cap.share, cap.direction.z)).x;
+        let value = glossy(lobe, wo, &cap, tables::lambert(cap.share, cap.direction.z), false).x;
         let lit = |wi: Vec3| lobe.kind.facet(wo, wi, alpha, lobe.masking).y * wi.z.max(0.0);
         let exact = in_cap(&cap, 48).map(lit).sum::<f32>() / 2304.0 * solid_angle;
         assert!(value.is_finite() && value >= 0.0);

@@ -39,7 +39,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let coat = frame_new(t.coat_normal);
     let asked = AreaCubeAsked(
         given.edge, (given.flags & AREA_CUBE_FEW) != 0u, (given.flags & AREA_CUBE_CORRECTED) != 0u,
-        (given.flags & AREA_CUBE_NORMALIZED) != 0u,
+        (given.flags & AREA_CUBE_NORMALIZED) != 0u, (given.flags & AREA_CUBE_MIDDLES) != 0u,
     );
     var looked = AreaCubeLooked(from_middle, base.n, coat.n);
     if asked.few {

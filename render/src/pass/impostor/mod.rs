@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use burnish_core::lighting::area_cube::{self, Asked};
 
 use crate::device::Gpu;
-use crate::layout::types::{AREA_CUBE_CORRECTED, AREA_CUBE_FEW, AREA_CUBE_NORMALIZED, EffortData};
+use crate::layout::types::{AREA_CUBE_CORRECTED, AREA_CUBE_FEW, AREA_CUBE_MIDDLES, AREA_CUBE_NORMALIZED, EffortData};
 use crate::pass::classical::frame_constants;
 use crate::pass::environment::{cube_sampler, cube_view};
 use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
@@ -164,8 +164,13 @@ impl ImpostorPass {
 
     /// The settings as group 3, with the trees that errors are told by.
     pub(crate) fn effort(&self, gpu: &Gpu, look: &ProbeLook, trees: Option<&TraceTree>) -> wgpu::BindGroup {
-        let Asked { few, corrected, normalized } = look.asked;
-        let flags = [(few, AREA_CUBE_FEW), (corrected, AREA_CUBE_CORRECTED), (normalized, AREA_CUBE_NORMALIZED)];
+        let Asked { few, corrected, normalized, middles } = look.asked;
+        let flags = [
+            (few, AREA_CUBE_FEW),
+            (corrected, AREA_CUBE_CORRECTED),
+            (normalized, AREA_CUBE_NORMALIZED),
+            (middles, AREA_CUBE_MIDDLES),
+        ];
         let data = EffortData {
             solver: look.effort.solver as u32,
             refinements: look.effort.refinements,

@@ -177,7 +177,7 @@ fn covered(clip_from_world: &Mat4, size: UVec2, bounds: &Bounds, rows: &Range<u3
     };
     let (mut low, mut high) = (Vec2::splat(f32::MAX), Vec2::splat(f32::MIN));
     for clip in (0..8).map(corner) {
-        if !(clip.w > 1e-6) {
+        if clip.w.is_nan() || clip.w <= 1e-6 {
             (low, high) = (Vec2::NEG_ONE, Vec2::ONE);
             break;
         }

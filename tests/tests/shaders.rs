@@ -206,6 +206,12 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("PROBE_FAR", f64::from(1e30_f32)),
         ],
         "impostor" => vec![
+            ("PYRAMID_JUMP", probe::JUMP.into()),
+            ("PYRAMID_WAYS", impostor::pyramid::WAYS.into()),
+            ("PYRAMID_LOOKUPS_PER_STEP", impostor::pyramid::LOOKUPS_PER_STEP.into()),
+            ("PYRAMID_ENTRY", impostor::pyramid::ENTRY.into()),
+            ("PYRAMID_DEPTH_MIN", impostor::pyramid::DEPTH_MIN.into()),
+            ("PYRAMID_FAR", impostor::pyramid::FAR.into()),
             ("IMPOSTOR_CLASSICAL", impostor::CLASSICAL.into()),
             ("IMPOSTOR_SPHERE", impostor::SPHERE.into()),
             ("IMPOSTOR_BOX", impostor::BOX.into()),
@@ -223,14 +229,6 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_SHOW_ERROR", impostor::SHOW_ERROR.into()),
             ("IMPOSTOR_MOST_LOOKUPS", impostor::MOST_LOOKUPS.into()),
             ("IMPOSTOR_MOST_RATIO", impostor::MOST_RATIO.into()),
-        ],
-        "pyramid" => vec![
-            ("PYRAMID_JUMP", probe::JUMP.into()),
-            ("PYRAMID_WAYS", impostor::pyramid::WAYS.into()),
-            ("PYRAMID_LOOKUPS_PER_STEP", impostor::pyramid::LOOKUPS_PER_STEP.into()),
-            ("PYRAMID_ENTRY", impostor::pyramid::ENTRY.into()),
-            ("PYRAMID_DEPTH_MIN", impostor::pyramid::DEPTH_MIN.into()),
-            ("PYRAMID_FAR", impostor::pyramid::FAR.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![

@@ -50,5 +50,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] =
-    &[&area::WGSL, &area_cube::WGSL, &classical::WGSL, &impostor::WGSL, &impostor::pyramid::WGSL, &probe::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &area_cube::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL];

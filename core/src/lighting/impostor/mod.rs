@@ -20,6 +20,7 @@ use glam::Vec3;
 
 use crate::leaf::Leaf;
 use crate::lighting::probe::DistanceCube;
+use crate::math;
 
 pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, show, sites};
 pub use placement::{Placement, place};
@@ -28,12 +29,17 @@ pub use show::{
 };
 pub use study::{HitErrors, MirrorRay, hit_errors, mirror_rays};
 
-/// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky.
+/// The WGSL twin. The pass supplies `impostor_distance`, the radial distance of the surface in a unit direction, 0 for the sky; and for
+/// the pyramid `pyramid_face`, the texels along an edge of the cube, at least 2, `pyramid_corners`, the four that a quad lies between, and
+/// `pyramid_bounds`, least and greatest of a cell of a level from 1 on.
 pub static WGSL: Leaf = Leaf {
     name: "impostor",
-    source: include_str!("impostor.wgsl"),
-    needs: &[&pyramid::WGSL],
-    externs: "fn impostor_distance(direction: vec3f) -> f32 { return 1.0; }",
+    source: concat!(include_str!("pyramid.wgsl"), include_str!("impostor.wgsl")),
+    needs: &[&math::WGSL],
+    externs: "fn impostor_distance(direction: vec3f) -> f32 { return 1.0; }
+fn pyramid_face() -> u32 { return 2u; }
+fn pyramid_corners(side: u32, x: u32, y: u32) -> vec4f { return vec4f(1.0); }
+fn pyramid_bounds(level: u32, side: u32, x: u32, y: u32) -> vec2f { return vec2f(0.0, 1e30); }",
 };
 
 /// Number of [`Solver::Classical`] in shaders.

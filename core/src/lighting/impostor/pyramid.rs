@@ -8,20 +8,8 @@
 use glam::{UVec2, Vec2, Vec3};
 
 use super::{Distances, Effort, Found, Walk};
-use crate::leaf::Leaf;
 use crate::lighting::probe::{Cells, DistanceCube, JUMP};
 use crate::math::cube::{face_point, mirrored};
-
-/// The WGSL twin. The pass supplies `pyramid_face`, the texels along an edge of the cube, at least 2, `pyramid_corners`, the four that a quad
-/// lies between, and `pyramid_bounds`, least and greatest of a cell of a level from 1 on.
-pub static WGSL: Leaf = Leaf {
-    name: "pyramid",
-    source: include_str!("pyramid.wgsl"),
-    needs: &[&crate::math::WGSL],
-    externs: "fn pyramid_face() -> u32 { return 2u; }
-fn pyramid_corners(side: u32, x: u32, y: u32) -> vec4f { return vec4f(1.0); }
-fn pyramid_bounds(level: u32, side: u32, x: u32, y: u32) -> vec2f { return vec2f(0.0, 1e30); }",
-};
 
 /// Most ways over faces; a straight line crosses fewer, roundings at corners may add some.
 pub const WAYS: u32 = 12;

@@ -109,7 +109,9 @@ fn shown() {
         bench.click_role(Role::Button, show);
         let text = bench.session().document().lighting.settings().text("show");
         assert_eq!(text.as_deref(), Some(show));
-        assert!(!bench.window.state().as_ref().expect("it was drawn").is_busy(), "nothing is prepared");
+        bench.until("it is compared", |workbench| !workbench.is_busy());
+        assert!(bench.window.query_all_by_label("draft").next().is_none());
+        bench.window.get_by_label("prepared");
     }
     assert!(bench.session().revision > before);
     bench.click_role(Role::CheckBox, "Show probes");

@@ -57,6 +57,16 @@ struct Held {
     warnings: Vec<String>,
 }
 
+/// Works on all cores but one: the window draws meanwhile.
+fn beside_the_window<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    match rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build() {
+        Ok(pool) => pool.install(work),
+        // Where there are no more threads it works on those that there are.
+        Err(_) => work(),
+    }
+}
+
 /// What a job is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wanted {
@@ -248,7 +258,9 @@ impl Preparation {
         let world = self.world.clone();
         let label = format!("Preparing {}", subject.method.info().title);
         let wake = move || ctx.request_repaint();
-        self.job = Some(Job::spawn(label, wake, move |job| subject.work(known, wanted, &store, &world, job)));
+        self.job = Some(Job::spawn(label, wake, move |job| {
+            beside_the_window(|| subject.work(known, wanted, &store, &world, job))
+        }));
     }
 
     fn poll(&mut self) {

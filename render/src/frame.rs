@@ -184,6 +184,10 @@ fn covered(clip_from_world: &Mat4, size: UVec2, bounds: &Bounds, rows: &Range<u3
         let ndc = Vec2::new(clip.x, -clip.y) / clip.w;
         (low, high) = (low.min(ndc), high.max(ndc));
     }
+    let pixel = 2.0 / size.as_vec2();
+    if (low - pixel).cmpgt(Vec2::ONE).any() || (high + pixel).cmplt(Vec2::NEG_ONE).any() {
+        return None;
+    }
     let pixels = |ndc: Vec2| (0.5 * ndc + 0.5).clamp(Vec2::ZERO, Vec2::ONE) * size.as_vec2();
     // A pixel more at every side: the frame is moved by a part of one.
     let (low, high) = ((pixels(low) - 1.0).as_uvec2(), (pixels(high) + 2.0).as_uvec2().min(size));
@@ -288,7 +292,7 @@ mod tests {
         assert_eq!(covered(&clip, size, &bounds, &(0..top)), None, "rows above it");
         let behind = Bounds { min: Vec3::splat(-9.0), max: Vec3::splat(9.0) };
         assert_eq!(covered(&clip, size, &behind, &all), Some([0, 0, 160, 90]), "the viewer is inside");
-        let beside = Bounds { min: Vec3::new(50.0, 0.0, -1.0), max: Vec3::new(51.0, 1.0, 0.0) };
+        let beside = Bounds { min: Vec3::new(40.0, 0.0, -21.0), max: Vec3::new(41.0, 1.0, -20.0) };
         assert_eq!(covered(&clip, size, &beside, &all), None);
     }
 }

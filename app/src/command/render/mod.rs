@@ -87,7 +87,8 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         true => (reference.given(), REFERENCE),
         false => (classical.given(), lighting::classical::ID),
     };
-    if let (Some(option), true) = (foreign, id != REFERENCE && !on_device) {
+    let has_pass = burnish_render::draws(layers.first().method.info().id);
+    if let (Some(option), true) = (foreign, has_pass && !on_device) {
         return Err(Failure::usage(format!(
             "{option} is for pictures of the graphics device; leave it out, or give --samples for this one"
         )));

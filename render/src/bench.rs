@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use burnish_core::lighting::classical::{self, FrameSettings};
 use burnish_core::lighting::prepared::Asked;
-use burnish_core::lighting::{self, Method, MethodError, MethodId};
+use burnish_core::lighting::{self, Method, MethodId};
 use burnish_core::material::preset::FormChoice;
 use burnish_core::measure::bench::{BenchError, FrameTimer, Frames, Preparation, Shot};
 use burnish_core::param::Settings;
@@ -123,10 +123,7 @@ impl DeviceTimer {
             return Ok(Lighting::default());
         }
         let world = World::new(scene, Options::new(settings));
-        let prepared = self.method.prepare(&world, settings, self.control.job()).map_err(|error| match error {
-            MethodError::Cancelled => BenchError::Cancelled,
-            MethodError::Unfit(reason) => BenchError::Method(reason),
-        })?;
+        let prepared = self.method.prepare(&world, settings, self.control.job())?;
         Ok(Lighting::new(id, Some(Arc::new(prepared))))
     }
 }

@@ -17,6 +17,7 @@ mod native;
 pub mod offscreen;
 mod palette;
 mod panel;
+mod pool;
 mod preferences;
 mod preparation;
 mod preparations;

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{Curves, Document, History, MaterialEntry, Missing, Opened, Resolved, Sources, resolve};
-use burnish_core::lighting::Layers;
+use burnish_core::lighting::probe::Site;
+use burnish_core::lighting::{Layers, impostor};
 use burnish_core::scene::{Bounds, Scene};
 
 /// What the next command is about.
@@ -31,6 +32,7 @@ pub struct Session {
     layers: Layers,
     /// Boxes of what the picture is about and of all, measured when someone asks.
     subject_bounds: OnceCell<Bounds>,
+    probe_sites: OnceCell<Vec<Site>>,
     bounds: OnceCell<Bounds>,
     /// Where the document is saved; `None` before the first time.
     pub path: Option<PathBuf>,
@@ -67,6 +69,7 @@ impl Session {
             resolved,
             layers,
             subject_bounds: OnceCell::new(),
+            probe_sites: OnceCell::new(),
             bounds: OnceCell::new(),
             path,
             saved,
@@ -103,6 +106,12 @@ impl Session {
     /// Box of what the picture is about. Measured once for a scene: that visits every vertex.
     pub fn subject_bounds(&self) -> Bounds {
         *self.subject_bounds.get_or_init(|| self.scene().subject_bounds())
+    }
+
+    /// Where the probes of the method stand, found likewise.
+    pub fn probe_sites(&self) -> &[Site] {
+        let find = || impostor::sites(self.scene(), &self.document().lighting.settings()).list;
+        self.probe_sites.get_or_init(find)
     }
 
     /// Box of the whole scene, measured likewise.
@@ -257,6 +266,7 @@ impl Session {
         self.resolved = resolve(self.history.current(), &self.sources, &mut self.curves);
         self.layers = self.history.current().lighting.layers(&self.resolved.object_keys);
         self.subject_bounds.take();
+        self.probe_sites.take();
         self.bounds.take();
         let known = |missing: &Missing| self.unread.iter().find(|m| m.path == missing.path && m.kind == missing.kind);
         self.missing = self.resolved.missing.iter().map(|missing| known(missing).unwrap_or(missing).clone()).collect();

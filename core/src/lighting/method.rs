@@ -134,15 +134,15 @@ pub trait Method: Sync {
         Ok(Prepared::nothing())
     }
 
-    /// It has drafts.
+    /// There is something to show before the whole is prepared, see [`Method::draft`].
     fn drafts(&self) -> bool {
         false
     }
 
     /// A coarse stand-in for what [`Method::prepare`] makes, in a part of a second: shown while something is dragged, until the whole
-    /// is there. `None` for methods that have none.
-    fn draft(&self, _world: &World, _settings: &Settings, _job: &Handle) -> Option<Result<Prepared, MethodError>> {
-        None
+    /// is there.
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        self.prepare(world, settings, job)
     }
 
     /// Where what was prepared fails for a scene, for people: each with what helps.

@@ -77,6 +77,12 @@ impl Prepared {
         Prepared { parts, ..self }
     }
 
+    /// The same with each of its parts made into another.
+    #[must_use]
+    pub fn map_parts(self, change: impl FnMut(Prepared) -> Prepared) -> Prepared {
+        Prepared { parts: self.parts.into_iter().map(change).collect(), ..self }
+    }
+
     /// Its parts.
     pub fn parts(&self) -> &[Prepared] {
         &self.parts

@@ -113,6 +113,11 @@ impl SurfacePoint<'_> {
         self.to_viewer
     }
 
+    /// The line of sight mirrored by the shading normal, world, unit.
+    pub fn mirrored(&self) -> Vec3 {
+        (-self.to_viewer).reflect(self.normal()).normalize_or(self.normal())
+    }
+
     /// What the surface is made of.
     pub fn surface(&self) -> Surface<'_> {
         self.point.surface(self.world)

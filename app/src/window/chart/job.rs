@@ -11,6 +11,7 @@ use burnish_core::reference::{self, Control};
 use eframe::egui;
 
 use crate::rig;
+use crate::window::pool;
 
 /// What is measured.
 pub struct Order {
@@ -87,9 +88,7 @@ fn measure(order: &Order, handle: &Handle, desk: &Desk) -> Measured {
     let mut rig = rig::rig(&control)?;
     let truth = {
         // One core is left for the window. Timing has all: the command line measures so, and its results are shared.
-        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
-        let pool =
-            rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1)).build().map_err(words)?;
+        let pool = pool::builder().build().map_err(words)?;
         let settings = Settings::new(reference::PARAMS);
         let mut halves = Halves::default();
         rig::truth(shot, &settings, *samples, (cache, &control), Some(&pool), || {

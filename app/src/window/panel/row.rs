@@ -5,7 +5,7 @@ use burnish_core::param::{Affects, ParamKind, ParamSpec, ParamValue};
 use eframe::egui;
 
 use crate::window::session::Session;
-use crate::window::widget::{Change, param_ui};
+use crate::window::widget::param_ui;
 
 /// Rows under a title that can be folded.
 pub fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
@@ -33,10 +33,8 @@ pub fn row_ui(
     set: impl FnOnce(&mut Document, ParamValue),
 ) {
     let edit = param_ui(ui, spec, value, spec.default());
-    match edit.change {
-        Some(Change::Set(value)) => session.edit(label, "", |document| set(document, value)),
-        Some(Change::Reset) => session.edit(label, "", |document| set(document, spec.default())),
-        None => {}
+    if let Some(new) = edit.value(spec) {
+        session.edit(label, "", |document| set(document, new));
     }
     // A run of camera moves is one step, whatever moves it.
     if edit.ended && label != burnish_core::document::VIEW_LABEL {

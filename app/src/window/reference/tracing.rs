@@ -12,6 +12,7 @@ use glam::UVec2;
 
 use super::desk::{Activity, Desk, Order};
 use super::{By, Look, Subject};
+use crate::window::pool;
 
 /// Side of the blocks of which one pixel each is traced first.
 const FIRST_LOOK: u32 = 8;
@@ -47,10 +48,7 @@ struct Tracing {
 
 /// Works until the window is gone; `wake` is called when there is something to see.
 pub fn run(desk: &Desk, wake: &dyn Fn()) {
-    // One core is left for the window.
-    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(cores.saturating_sub(1).max(1));
-    let pool = match builder.thread_name(|index| format!("reference {index}")).build() {
+    let pool = match pool::builder().thread_name(|index| format!("reference {index}")).build() {
         Ok(pool) => pool,
         Err(error) => {
             desk.give_up(error.to_string());

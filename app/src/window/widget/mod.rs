@@ -39,6 +39,14 @@ impl ParamEdit {
     fn at_once(value: ParamValue) -> ParamEdit {
         ParamEdit { change: Some(Change::Set(value)), ended: true }
     }
+
+    /// The value that the setting has now, if it changed; a reset goes back to its default.
+    pub fn value(&self, spec: &ParamSpec) -> Option<ParamValue> {
+        match self.change? {
+            Change::Set(value) => Some(value),
+            Change::Reset => Some(spec.default()),
+        }
+    }
 }
 
 /// A row for a setting: name, control, reset arrow. `base` is the value that a reset goes back to; a dot marks a

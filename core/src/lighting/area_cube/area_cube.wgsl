@@ -191,26 +191,15 @@ fn area_cube_glossy(
     return vec2f(value, rest * rest * (rest * rest) * rest);
 }
 
-// The face that shows a direction of cube maps, and the point of it in [-1, 1]^2.
-fn area_cube_face_point(d: vec3f) -> vec3f {
-    let a = abs(d);
-    if a.x >= a.y && a.x >= a.z {
-        return select(vec3f(d.z / a.x, -d.y / a.x, 1.0), vec3f(-d.z / a.x, -d.y / a.x, 0.0), d.x >= 0.0);
-    }
-    if a.y >= a.z {
-        return select(vec3f(d.x / a.y, -d.z / a.y, 3.0), vec3f(d.x / a.y, d.z / a.y, 2.0), d.y >= 0.0);
-    }
-    return select(vec3f(-d.x / a.z, -d.y / a.z, 5.0), vec3f(d.x / a.z, -d.y / a.z, 4.0), d.z >= 0.0);
-}
-
+// Number of the texel at a point of a face, as cube_face_point gives it.
 fn area_cube_number(place: vec3f, edge: u32) -> u32 {
-    let at = vec2u(clamp((0.5 * place.xy + 0.5) * f32(edge), vec2f(0.0), vec2f(f32(edge - 1u))));
-    return (u32(place.z) * edge + at.y) * edge + at.x;
+    let at = vec2u(clamp((0.5 * place.yz + 0.5) * f32(edge), vec2f(0.0), vec2f(f32(edge - 1u))));
+    return (u32(place.x) * edge + at.y) * edge + at.x;
 }
 
 // Number of the texel in a direction of the world.
 fn area_cube_texel_at(direction: vec3f, edge: u32) -> u32 {
-    return area_cube_number(area_cube_face_point(vec3f(direction.xy, -direction.z)), edge);
+    return area_cube_number(cube_face_point(vec3f(direction.xy, -direction.z)), edge);
 }
 
 // Number of the texel beyond the right, left, lower or upper edge of a texel.
@@ -219,7 +208,7 @@ fn area_cube_neighbour(index: u32, side: u32, edge: u32) -> u32 {
     let sign = select(1.0, -1.0, side % 2u == 1u);
     let to = select(vec2f(0.0, sign), vec2f(sign, 0.0), side < 2u);
     let next = clamp((at + to) / f32(edge) * 2.0 - 1.0, vec2f(-1.001), vec2f(1.001));
-    return area_cube_number(area_cube_face_point(cube_direction(index / (edge * edge), next)), edge);
+    return area_cube_number(cube_face_point(cube_direction(index / (edge * edge), next)), edge);
 }
 
 fn area_cube_add(sum: ptr<function, AreaCubeGathered>, radiance: vec3f, weight: f32, schlick: f32) {

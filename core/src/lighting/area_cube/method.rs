@@ -120,8 +120,8 @@ impl Method for AreaCube {
         true
     }
 
-    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Option<Result<Prepared, MethodError>> {
-        Some(record(world, &impostor::sites(world.scene(), settings).coarse(), job))
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        record(world, &impostor::sites(world.scene(), settings).coarse(), job)
     }
 
     fn warnings(&self, scene: &Scene, prepared: &Prepared, settings: &Settings) -> Vec<String> {
@@ -140,9 +140,8 @@ impl Method for AreaCube {
 /// The probes with their coarse cubes.
 fn record(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, MethodError> {
     let recorded = probe::prepare(world, sites, job)?;
-    let coarse = Probes::of(&recorded).iter().map(|probe| coarse(&probe)).collect::<Vec<_>>();
-    let parts = recorded.parts().iter().cloned().zip(coarse);
-    Ok(Prepared::nothing().with_parts(parts.map(|(part, numbers)| part.with(ARRAY, numbers)).collect()))
+    let mut coarse = Probes::of(&recorded).iter().map(|probe| coarse(&probe)).collect::<Vec<_>>().into_iter();
+    Ok(recorded.map_parts(|part| part.with(ARRAY, coarse.next().unwrap_or_default())))
 }
 
 /// The coarse cubes of a probe, one after the other.
@@ -180,7 +179,7 @@ pub fn asked(settings: &Settings) -> Asked {
     }
 }
 
-/// How the texel is found that a reflection meets: a texel is large, two steps are enough.
+/// How the texel is found that a reflection meets: a texel is large, two steps are enough; the tolerance is that of `impostor`.
 const EFFORT: Effort = Effort { solver: Solver::Secant, refinements: 2, steps: 1, tolerance: 0.05 };
 
 /// In which direction the probe sees what the reflection of a lobe of width `alpha` meets.
@@ -189,8 +188,7 @@ fn met(probe: &Probe<'_>, x: Vec3, frame: &Frame, to_viewer: Vec3, alpha: f32) -
     let mirrored = 2.0 * n.dot(to_viewer) * n - to_viewer;
     // Wide lobes lean toward the normal, where the cosine is larger: as the one lookup of `classical`.
     let direction = mirrored.lerp(n, alpha * alpha).normalize_or(n);
-    let distances = |d: Vec3| probe.distances.distance(d);
-    impostor::solve(&distances, &probe.extent, x, direction, &EFFORT).direction(x, direction)
+    impostor::solve(&probe.distances, &probe.extent, x, direction, &EFFORT).direction(x, direction)
 }
 
 impl ShadePoint for AreaCube {
@@ -198,20 +196,15 @@ impl ShadePoint for AreaCube {
         let (edge, asked) = (edge(settings), asked(settings));
         let surface = point.surface();
         let (base, coat, to_viewer) = (point.base(), point.coat(), point.to_viewer());
-        let (mut sum, mut left) = (Vec3::ZERO, 1.0);
-        for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
-            let Some(texels) = Texels::of(probe.maps.floats(ARRAY), edge) else { continue };
-            let x = point.position() - probe.middle;
+        Probes::of(prepared).shaded(point, random, |probe, x| {
+            let texels = Texels::of(probe.maps.floats(ARRAY), edge)?;
             let mut at = Looked { x, base: base.n, coat: coat.n };
             if asked.few {
-                at.base = met(&probe, x, base, to_viewer, (surface.alpha.x * surface.alpha.y).sqrt());
-                at.coat = met(&probe, x, coat, to_viewer, surface.coat_alpha);
+                at.base = met(probe, x, base, to_viewer, (surface.alpha.x * surface.alpha.y).sqrt());
+                at.coat = met(probe, x, coat, to_viewer, surface.coat_alpha);
             }
-            sum += weight * reflected(&texels, &surface, base, coat, to_viewer, point.occlusion(), &at, asked);
-            left -= weight;
-        }
-        // What no probe knows.
-        if left > 1e-4 { sum + left * point.environment([random, random]) } else { sum }
+            Some(reflected(&texels, &surface, base, coat, to_viewer, point.occlusion(), &at, asked))
+        })
     }
 }
 

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use glam::{Vec2, Vec3};
 
+use super::study::apart;
 use super::{Effort, Found, Show, Solver, error_shown, level, shown, solve};
 use crate::job::Handle;
 use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
@@ -135,8 +136,8 @@ impl Method for Impostor {
         true
     }
 
-    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Option<Result<Prepared, MethodError>> {
-        Some(probe::prepare(world, &sites(world.scene(), settings).coarse(), job))
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        probe::prepare(world, &sites(world.scene(), settings).coarse(), job)
     }
 
     fn warnings(&self, scene: &Scene, prepared: &Prepared, settings: &Settings) -> Vec<String> {
@@ -191,19 +192,13 @@ impl ShadePoint for Impostor {
         let (effort, show) = (effort(settings), show(settings));
         let FrameSettings { samples, .. } = FrameSettings::new(settings);
         let lobes = Lobes { samples, rotation: Vec2::new(random[0], random[1]) };
-        let (mut sum, mut left) = (Vec3::ZERO, 1.0);
-        for (probe, weight) in Probes::of(prepared).about(point.instance(), point.position()) {
-            let Some(maps) = PreparedMaps::unturned(probe.maps) else { continue };
-            let maps = Localised { maps, x: point.position() - probe.middle, probe, effort };
-            sum += weight
-                * match show {
-                    Show::Light => reflected(point, &maps, lobes),
-                    other => searched(point, &maps, other),
-                };
-            left -= weight;
-        }
-        // What no probe knows.
-        if left > 1e-4 { sum + left * point.environment([random, random]) } else { sum }
+        Probes::of(prepared).shaded(point, random, |probe, x| {
+            let maps = Localised { maps: PreparedMaps::unturned(probe.maps)?, x, probe: *probe, effort };
+            Some(match show {
+                Show::Light => reflected(point, &maps, lobes),
+                other => searched(point, &maps, other),
+            })
+        })
     }
 }
 
@@ -215,8 +210,7 @@ fn reflected(point: &SurfacePoint<'_>, maps: &Localised<'_>, lobes: Lobes) -> Ve
 
 /// The colour of the search in the mirror direction.
 fn searched(point: &SurfacePoint<'_>, maps: &Localised<'_>, show: Show) -> Vec3 {
-    let mirrored = -point.to_viewer().reject_from(point.normal()) + point.to_viewer().project_onto(point.normal());
-    let r = mirrored.try_normalize().unwrap_or(point.normal());
+    let r = point.mirrored();
     let found = maps.follow(r);
     if show != Show::Error {
         return shown(&found, show);
@@ -225,7 +219,7 @@ fn searched(point: &SurfacePoint<'_>, maps: &Localised<'_>, show: Show) -> Vec3 
     let met = point.world().distance_past(point.position(), r, served);
     // The sky is seen in the same direction from everywhere.
     let wanted = met.map_or(r, |t| maps.x + t * r);
-    error_shown(wanted.angle_between(found.direction(maps.x, r)).to_degrees())
+    error_shown(apart(wanted, found.direction(maps.x, r)))
 }
 
 /// The maps of a probe as a point beside its middle sees them.

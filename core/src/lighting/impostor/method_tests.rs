@@ -109,5 +109,6 @@ fn errors_of_hits_tell_searches_apart() {
     assert!(classical.p95 > 13.0 && classical.misses == 1.0, "{classical:?}");
     // The walls are planes, which the distances keep exactly.
     assert!(secant.p95 < 0.1 && secant.misses < 0.01, "{secant:?}");
-    assert!(march.p95 < 0.1 && march.off < 0.05 && march.lookups > secant.lookups, "{march:?}");
+    // 2.3 % end at edges of the walls, which lie between texels of 3 degrees.
+    assert!(march.p95 < 0.1 && march.off < 0.03 && march.lookups > secant.lookups, "{march:?}");
 }

@@ -53,8 +53,7 @@ pub fn mirror_rays(world: &World, prepared: &Prepared, view: &View) -> Vec<Mirro
         let eye = Eye::new(world, view, pixel, 0);
         let point = eye.point()?;
         let (probe, _) = Probes::of(prepared).about(point.instance(), point.position()).into_iter().next()?;
-        let normal = point.normal();
-        let direction = (2.0 * point.to_viewer().dot(normal) * normal - point.to_viewer()).try_normalize()?;
+        let direction = point.mirrored();
         let met = world.distance_past(point.position(), direction, probe.maps.whole("served"));
         let is_seen = met.is_none_or(|t| {
             let from_probe = point.position() + t * direction - probe.middle;

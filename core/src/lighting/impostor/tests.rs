@@ -1,3 +1,4 @@
+use super::study::apart;
 use super::*;
 use crate::math::sampling::Random;
 
@@ -30,11 +31,6 @@ fn within(random: &mut Random, half: f32) -> Vec3 {
 /// Where a ray leaves the cubic room.
 fn exact(x: Vec3, r: Vec3) -> f32 {
     proxy::cuboid(x, r, Vec3::NEG_ONE, Vec3::ONE).unwrap()
-}
-
-/// Degrees between directions of any length.
-fn apart(a: Vec3, b: Vec3) -> f32 {
-    a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }
 
 #[test]

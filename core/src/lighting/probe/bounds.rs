@@ -1,6 +1,6 @@
 //! Least and greatest of what a cube of distances keeps, over cells of 2, 4, 8 ... quads.
 
-use super::JUMP;
+use super::{DistanceCube, JUMP};
 
 /// Share by which bounds are wider than what they bound: more than what is computed from them is rounded by.
 const SLACK: f32 = 1e-4;
@@ -69,10 +69,7 @@ pub fn bounds(face: u32, inverse: &[f32]) -> Vec<f32> {
 /// Bounds over a quad: of the texels around it at a jump, else of the line through them at its corners.
 fn quad(face: u32, inverse: &[f32], side: u32, x: u32, y: u32) -> [f32; 2] {
     let last = face.max(1) - 1;
-    let texel = |x: u32, y: u32| {
-        inverse.get(((side * face + y.min(last)) * face + x.min(last)) as usize).copied().unwrap_or(0.0)
-    };
-    let corners = [texel(x, y), texel(x + 1, y), texel(x, y + 1), texel(x + 1, y + 1)];
+    let corners = DistanceCube::new(face, inverse, &[]).corners(side, x, y);
     if corners.iter().any(|corner| !corner.is_finite()) {
         return ANY;
     }
@@ -98,7 +95,6 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::lighting::probe::DistanceCube;
     use crate::math::cube::{face_point, mirrored};
     use crate::math::sampling::Random;
 

@@ -19,6 +19,7 @@ use glam::Vec3;
 use crate::leaf::Leaf;
 use crate::lighting::{Prepared, impostor::Extent};
 use crate::math;
+use crate::reference::SurfacePoint;
 
 pub use bounds::{Cells, bounds};
 pub use distances::{DistanceCube, JUMP};
@@ -37,6 +38,9 @@ pub static WGSL: Leaf = Leaf {
     externs: "fn probe_place(index: u32) -> ProbePlace { return ProbePlace(vec3f(0.0), vec3f(1.0)); }
 fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 { return 1.0; }",
 };
+
+/// A share of the light that is more than what sums of weights are rounded by.
+const UNKNOWN: f32 = 1e-4;
 
 /// The probes that were prepared.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +105,23 @@ impl<'a> Probes<'a> {
     pub fn places(&self) -> impl Iterator<Item = Place> + use<'a> {
         let box_of = |maps: &Prepared| Place { middle: maps.vector("probe", 0), half: maps.vector("probe", 4) };
         self.prepared.parts().iter().map(box_of)
+    }
+
+    /// Sums over the probes that know the surroundings of a point what `of` makes of each, from the point relative to its middle;
+    /// what none knows is the environment. Probes for which it has nothing count as unknown.
+    pub fn shaded(
+        &self,
+        point: &SurfacePoint<'_>,
+        random: [f32; 4],
+        of: impl Fn(&Probe<'a>, Vec3) -> Option<Vec3>,
+    ) -> Vec3 {
+        let (mut sum, mut left) = (Vec3::ZERO, 1.0);
+        for (probe, weight) in self.about(point.instance(), point.position()) {
+            let Some(light) = of(&probe, point.position() - probe.middle) else { continue };
+            sum += weight * light;
+            left -= weight;
+        }
+        if left > UNKNOWN { sum + left * point.environment([random, random]) } else { sum }
     }
 
     /// The probes that know the surroundings of a point of an instance, with their weights, which sum to 1 or, at the rim

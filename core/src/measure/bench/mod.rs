@@ -24,7 +24,7 @@ use glam::UVec2;
 use super::MeasureError;
 use crate::document::Curves;
 use crate::file::FileError;
-use crate::lighting::method::MethodId;
+use crate::lighting::method::{MethodError, MethodId};
 use crate::material::Reflectance;
 use crate::material::preset::{self, FormChoice, Preset};
 use crate::param::Settings;
@@ -165,4 +165,13 @@ pub enum BenchError {
     /// The user ended it.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<MethodError> for BenchError {
+    fn from(error: MethodError) -> BenchError {
+        match error {
+            MethodError::Cancelled => BenchError::Cancelled,
+            MethodError::Unfit(reason) => BenchError::Method(reason),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::{BenchError, FrameTimer, Frames, Preparation, Shot};
-use crate::lighting::{Drawing, Method, MethodError, Prepared, classical};
+use crate::lighting::{Drawing, Method, Prepared, classical};
 use crate::param::Settings;
 use crate::picture::Picture;
 use crate::reference::{Control, Film, Options, Pass, View, World};
@@ -40,10 +40,7 @@ impl FrameTimer for PointTimer {
     fn open(&mut self, shot: &Shot, settings: &Settings) -> Result<Box<dyn Frames>, BenchError> {
         let world = World::new(&shot.in_form(classical::form_choice(settings)), Options::new(settings));
         let start = Instant::now();
-        let prepared = self.method.prepare(&world, settings, self.control.job()).map_err(|error| match error {
-            MethodError::Cancelled => BenchError::Cancelled,
-            MethodError::Unfit(reason) => BenchError::Method(reason),
-        })?;
+        let prepared = self.method.prepare(&world, settings, self.control.job())?;
         let preparation = Preparation { secs: start.elapsed().as_secs_f64(), bytes: Some(prepared.bytes()) };
         let view = View { camera: shot.camera.clone(), size: shot.size, seed: SEED };
         let control = self.control.clone();

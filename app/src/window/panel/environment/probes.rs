@@ -10,9 +10,10 @@ use eframe::egui::{self, RichText, Role, WidgetInfo};
 use glam::Vec3;
 
 use super::Context;
-use crate::window::panel::row::spec;
+use crate::window::panel::row::{number, spec};
+use crate::window::pool;
 use crate::window::session::Session;
-use crate::window::widget::{Change, name_widget, param_ui, typed_ui};
+use crate::window::widget::{name_widget, param_ui, typed_ui};
 
 const OWN_PLACE: ParamSpec = spec(
     "own-place",
@@ -96,7 +97,7 @@ struct Placing {
 
 impl Default for ProbesSection {
     fn default() -> Self {
-        ProbesSection { bound: 1.0, placing: None, told: String::new() }
+        ProbesSection { bound: number(BOUND.default()), placing: None, told: String::new() }
     }
 }
 
@@ -105,10 +106,8 @@ impl ProbesSection {
     pub fn ui(&mut self, ui: &mut egui::Ui, context: &mut Context<'_>) {
         list_ui(ui, context);
         let edit = param_ui(ui, &BOUND, ParamValue::Number(self.bound), BOUND.default());
-        match edit.change {
-            Some(Change::Set(ParamValue::Number(bound))) => self.bound = bound,
-            Some(Change::Reset) => self.bound = 1.0,
-            _ => {}
+        if let Some(bound) = edit.value(&BOUND) {
+            self.bound = number(bound);
         }
         self.poll(context);
         ui.horizontal_wrapped(|ui| match &self.placing {
@@ -138,7 +137,7 @@ impl ProbesSection {
         let served = if serves.is_empty() { scene.served() } else { of_keys() };
         let (effort, bound, ctx) = (impostor::effort(&session.document().lighting.settings()), self.bound, ctx.clone());
         self.told.clear();
-        let work = move |job: &Handle| impostor::place(&scene, &served, bound as f32, &effort, job);
+        let work = move |job: &Handle| pool::install(|| impostor::place(&scene, &served, bound as f32, &effort, job));
         let job = Job::spawn("Placing probes", move || ctx.request_repaint(), work);
         self.placing = Some(Placing { serves, job });
     }
@@ -297,9 +296,8 @@ fn serves_ui(ui: &mut egui::Ui, session: &mut Session, probe: &ProbeEntry) {
 
 /// Where a probe stands now.
 fn middle(session: &Session, name: &str) -> Vec3 {
-    let settings = session.document().lighting.settings();
-    let sites = impostor::sites(session.scene(), &settings).list;
-    sites.into_iter().find(|site| site.name == name).map_or(session.subject_bounds().center(), |site| site.middle)
+    let site = session.probe_sites().iter().find(|site| site.name == name);
+    site.map_or(session.subject_bounds().center(), |site| site.middle)
 }
 
 fn as_vector(value: ParamValue) -> Option<[f64; 3]> {
@@ -317,6 +315,7 @@ fn set(session: &mut Session, label: &str, name: &str, change: impl FnOnce(&mut 
     });
 }
 
+/// A row for a value of a probe.
 fn row(
     ui: &mut egui::Ui,
     session: &mut Session,
@@ -326,12 +325,7 @@ fn row(
     change: impl FnOnce(&mut ProbeEntry, ParamValue),
 ) {
     let edit = param_ui(ui, spec, value, spec.default());
-    let new = match edit.change {
-        Some(Change::Set(value)) => Some(value),
-        Some(Change::Reset) => Some(spec.default()),
-        None => None,
-    };
-    if let Some(new) = new {
+    if let Some(new) = edit.value(spec) {
         set(session, &format!("{} of probe", spec.label), name, |probe| change(probe, new));
     }
     if edit.ended {

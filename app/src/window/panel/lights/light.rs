@@ -11,7 +11,7 @@ use crate::number::short;
 use crate::window::lights::{self, LightAct};
 use crate::window::panel::row::{number, spec};
 use crate::window::session::Session;
-use crate::window::widget::{Change, choice_ui, columns, name_ui, param_ui, typed_ui};
+use crate::window::widget::{choice_ui, columns, name_ui, param_ui, typed_ui};
 
 const fn range(min: f64, max: f64, default: f64) -> ParamKind {
     ParamKind::Number { min, max, default }
@@ -119,12 +119,7 @@ impl Editor<'_> {
         change: impl FnOnce(&mut LightEntry, ParamValue),
     ) {
         let edit = param_ui(ui, spec, value, spec.default());
-        let new = match edit.change {
-            Some(Change::Set(value)) => Some(value),
-            Some(Change::Reset) => Some(spec.default()),
-            None => None,
-        };
-        if let Some(new) = new {
+        if let Some(new) = edit.value(spec) {
             self.set(&format!("{} of light", spec.label), |light| change(light, new));
         }
         if edit.ended {

@@ -1,7 +1,6 @@
 //! Marks of probes in the picture: where they stand, in which box they serve, what they take the surroundings to be.
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::impostor;
 use burnish_core::lighting::probe::{Probe, Probes, Site};
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::Vec3;
@@ -22,11 +21,11 @@ const EVERYWHERE: f32 = 1e8;
 
 /// Shows the marks that are on.
 pub fn ui(ui: &egui::Ui, sight: &Sight, session: &Session, marks: &ProbeMarks, prepared: Option<&Prepared>) {
-    let lighting = &session.document().lighting;
-    if !(marks.places || marks.distances) || !lighting.live_method().info().reads.probes {
+    let method = session.document().lighting.live_method();
+    if !(marks.places || marks.distances) || !method.info().reads.probes {
         return;
     }
-    let sites = impostor::sites(session.scene(), &lighting.settings()).list;
+    let sites = session.probe_sites();
     let chosen = sites.iter().position(|site| site.name == marks.chosen).unwrap_or(0);
     let painter = ui.painter_at(sight.rect);
     if let Some(probe) = prepared.filter(|_| marks.distances).and_then(|prepared| Probes::of(prepared).get(chosen)) {

@@ -1,0 +1,139 @@
+use super::*;
+use burnish_core::lighting::{Coverage, MethodInfo};
+use burnish_core::scene::gallery;
+
+/// Counts lamps, unless there are none.
+#[derive(Debug)]
+struct Lamps;
+
+static INFO: MethodInfo = MethodInfo {
+    id: MethodId("lamps"),
+    title: "Lamps",
+    summary: "",
+    params: &[],
+    coverage: Coverage::NONE,
+    reads: Reads { lights: true, ..Reads::NOTHING },
+    revision: 1,
+};
+
+impl Method for Lamps {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+
+    fn prepare(&self, world: &World, _: &Settings, _: &Handle) -> Result<Prepared, MethodError> {
+        match world.scene().lights.len() {
+            0 => Err(MethodError::Unfit("no lamps".into())),
+            count => Ok(Prepared::nothing().with("count", vec![count as u32])),
+        }
+    }
+}
+
+/// Follows a scene until no thread works on it.
+fn settle(preparation: &mut Preparation, scene: &Arc<Scene>) -> State {
+    let ctx = egui::Context::default();
+    loop {
+        preparation.follow(&Lamps, Settings::new(INFO.params), scene, &ctx);
+        if !preparation.is_busy() {
+            return preparation.state();
+        }
+        std::thread::yield_now();
+    }
+}
+
+#[test]
+fn what_took_long_is_used_while_stale_and_made_again_on_demand() {
+    let scene = Arc::new(gallery::open("workbench").unwrap());
+    let mut preparation = Preparation { quick: Duration::ZERO, ..Preparation::default() };
+    assert_eq!(settle(&mut preparation, &scene), State::Fresh);
+    let first = preparation.prepared(&Lamps).unwrap();
+    // An edit of what is not read.
+    let mut edited = Scene::clone(&scene);
+    edited.materials[0].roughness = 0.9;
+    let edited = Arc::new(edited);
+    assert_eq!(settle(&mut preparation, &edited), State::Fresh);
+    assert!(Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+    // And of what is.
+    let mut brighter = Scene::clone(&edited);
+    brighter.lights[0].intensity *= 2.0;
+    let brighter = Arc::new(brighter);
+    assert_eq!(settle(&mut preparation, &brighter), State::Stale);
+    assert!(Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+    preparation.again(&egui::Context::default());
+    assert_eq!(settle(&mut preparation, &brighter), State::Fresh);
+    assert!(!Arc::ptr_eq(&first, &preparation.prepared(&Lamps).unwrap()));
+    // Back again: stale, not lost.
+    assert_eq!(settle(&mut preparation, &scene), State::Stale);
+    let mut preparation = preparation.always_anew();
+    assert_eq!(settle(&mut preparation, &brighter), State::Fresh);
+    assert_eq!(settle(&mut preparation, &scene), State::Fresh, "it took too long, and is made all the same");
+    // Another method has none of it, and always the same nothing.
+    let nothing = || preparation.prepared(&burnish_core::reference::Reference).unwrap();
+    assert!(nothing().is_nothing() && Arc::ptr_eq(&nothing(), &nothing()));
+}
+
+/// Counts lamps; a draft says that there is one.
+#[derive(Debug)]
+struct Drafting;
+
+impl Method for Drafting {
+    fn info(&self) -> &'static MethodInfo {
+        &INFO
+    }
+
+    fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        Lamps.prepare(world, settings, job)
+    }
+
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    fn draft(&self, _: &World, _: &Settings, _: &Handle) -> Result<Prepared, MethodError> {
+        Ok(Prepared::nothing().with("count", vec![1_u32]))
+    }
+}
+
+#[test]
+fn a_draft_comes_first_and_the_whole_when_the_scene_rests() {
+    let ctx = egui::Context::default();
+    let mut scene = gallery::open("workbench").unwrap();
+    scene.lights.push(scene.lights[0].clone());
+    scene.lights.push(scene.lights[0].clone());
+    let (scene, mut preparation) = (Arc::new(scene), Preparation::default());
+    let count = |preparation: &Preparation| preparation.prepared(&Drafting).map(|prepared| prepared.whole("count")[0]);
+    let until = |preparation: &mut Preparation, scene: &Arc<Scene>, state: State| {
+        while preparation.state() != state {
+            preparation.follow(&Drafting, Settings::new(INFO.params), scene, &ctx);
+            std::thread::yield_now();
+        }
+    };
+    until(&mut preparation, &scene, State::Draft);
+    assert!(count(&preparation) == Some(1) && preparation.is_busy(), "the whole is still to come");
+    let held = preparation.prepared(&Drafting).unwrap();
+    // An edit of what is not read leaves the draft in use.
+    let mut edited = Scene::clone(&scene);
+    edited.materials[0].roughness = 0.9;
+    let edited = Arc::new(edited);
+    preparation.follow(&Drafting, Settings::new(INFO.params), &edited, &ctx);
+    until(&mut preparation, &edited, State::Draft);
+    assert!(Arc::ptr_eq(&held, &preparation.prepared(&Drafting).unwrap()));
+    until(&mut preparation, &edited, State::Fresh);
+    assert!(count(&preparation) >= Some(3) && !preparation.is_busy());
+    // Sides of a comparison show no drafts.
+    let mut always = Preparation::default().always_anew();
+    until(&mut always, &scene, State::Fresh);
+    assert!(count(&always) >= Some(3));
+}
+
+#[test]
+fn what_is_quick_follows_every_edit_and_a_fault_is_told() {
+    let mut preparation = Preparation { quick: Duration::MAX, ..Preparation::default() };
+    let mut scene = gallery::open("workbench").unwrap();
+    assert_eq!(settle(&mut preparation, &Arc::new(scene.clone())), State::Fresh);
+    scene.lights[0].intensity *= 2.0;
+    assert_eq!(settle(&mut preparation, &Arc::new(scene.clone())), State::Fresh);
+    scene.lights.clear();
+    assert_eq!(settle(&mut preparation, &Arc::new(scene)), State::Stale);
+    assert_eq!(preparation.fault(), Some("no lamps"));
+}

@@ -15,7 +15,7 @@ use crate::layout::types::{
 };
 use crate::pass::classical::Variant;
 use crate::pass::gbuffer::GBuffer;
-use crate::pass::impostor::Drawn;
+use crate::pass::probe::Drawn;
 use crate::pass::target;
 use crate::passes::{Passes, frame_format};
 use crate::probes::ProbeLook;
@@ -91,7 +91,7 @@ impl Encoding {
         let probed = !resident.probe_groups.is_empty() && settings.contribution == Contribution::All;
         let errors = look.show == Show::Error && !resident.lighting.is_area_cube();
         let trees = if probed && errors { resident.trees(passes) } else { &[] };
-        let group = |probe: usize| passes.impostor.effort(gpu, look, trees.get(probe));
+        let group = |probe: usize| passes.probe.effort(gpu, look, trees.get(probe));
         let looks = if probed { (0..resident.probe_groups.len()).map(group).collect() } else { Vec::new() };
         // Where a tree does not fit the device nothing is shown of errors.
         let errors = errors && trees.len() == resident.probe_groups.len();
@@ -142,7 +142,7 @@ impl Encoding {
         for ((probe, look), served) in resident.probe_groups.iter().zip(&self.looks).zip(&resident.served) {
             let Some(part) = covered(&self.clip_from_world, targets.size, served, &rows) else { continue };
             let groups = [&self.scene_group, &targets.gbuffer_group, probe, look];
-            passes.impostor.encode(encoder, &targets.frame, groups, drawn, part);
+            passes.probe.encode(encoder, &targets.frame, groups, drawn, part);
         }
     }
 

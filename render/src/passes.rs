@@ -12,7 +12,7 @@ use crate::pass::display::DisplayPass;
 use crate::pass::environment::{EnvironmentPass, background_layout};
 use crate::pass::forward::ForwardPass;
 use crate::pass::gbuffer::GBufferPass;
-use crate::pass::impostor::ImpostorPass;
+use crate::pass::probe::ProbePass;
 use crate::pass::scene_layout;
 use crate::pass::shadow::ShadowPass;
 use crate::scene::material_layout;
@@ -28,7 +28,7 @@ pub struct Passes {
     pub(crate) shadow: ShadowPass,
     pub(crate) gbuffer: GBufferPass,
     pub(crate) classical: ClassicalPass,
-    pub(crate) impostor: ImpostorPass,
+    pub(crate) probe: ProbePass,
     pub(crate) catcher: CatcherPass,
     pub(crate) forward: ForwardPass,
     pub(crate) accumulate: AccumulatePass,
@@ -52,7 +52,7 @@ impl Passes {
             environment: EnvironmentPass::new(gpu),
             shadow: ShadowPass::new(gpu, &mesh),
             gbuffer: GBufferPass::new(gpu, &mesh),
-            impostor: ImpostorPass::new(gpu, &scene_layout, classical.gbuffer_layout(), format),
+            probe: ProbePass::new(gpu, &scene_layout, classical.gbuffer_layout(), format),
             classical,
             catcher: CatcherPass::new(gpu, &scene_layout, &light_layout, &background_layout),
             forward: ForwardPass::new(gpu, &lit, format),

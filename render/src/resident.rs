@@ -135,7 +135,7 @@ impl Loader {
             _ => lighting.prepared().map_or_else(Vec::new, |prepared| served(scene, prepared)),
         };
         let each = probes.iter().flat_map(|probes| &probes.each);
-        let group = |probe| passes.impostor.group(gpu, probe, &places, &tables.buffer);
+        let group = |probe| passes.probe.group(gpu, probe, &places, &tables.buffer);
         let probe_groups = each.map(group).collect();
         let seen = before.map(|before| &before.background);
         let background = BackgroundMap::new(gpu, &passes.background_layout, scene, seen)?;

@@ -25,7 +25,7 @@ const SHADE: &str = include_str!("pass/classical/shade.wgsl");
 const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
 const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 const RAYS: &str = include_str!("pass/classical/rays.wgsl");
-const IMPOSTOR_LOOK: &str = include_str!("pass/impostor/look.wgsl");
+const IMPOSTOR_LOOK: &str = include_str!("pass/probe/look.wgsl");
 const BACKGROUND: &str = include_str!("pass/environment/background.wgsl");
 
 /// Fills the G-buffer.
@@ -80,7 +80,7 @@ pub static IMPOSTOR: Shader = Shader {
         GBUFFER_BINDINGS,
         RAYS,
         IMPOSTOR_LOOK,
-        include_str!("pass/impostor/impostor.wgsl"),
+        include_str!("pass/probe/impostor.wgsl"),
     ],
 };
 
@@ -96,7 +96,7 @@ pub static AREA_CUBE: Shader = Shader {
         GBUFFER_BINDINGS,
         RAYS,
         IMPOSTOR_LOOK,
-        include_str!("pass/area_cube/area_cube.wgsl"),
+        include_str!("pass/probe/area_cube.wgsl"),
     ],
 };
 
@@ -115,7 +115,7 @@ pub static IMPOSTOR_ERROR: Shader = Shader {
         "@group(3) @binding(1) var<storage, read> trace_words: array<vec4u>;",
         include_str!("trace/numbers.wgsl"),
         include_str!("trace/trace.wgsl"),
-        include_str!("pass/impostor/error.wgsl"),
+        include_str!("pass/probe/error.wgsl"),
     ],
 };
 

@@ -7,7 +7,7 @@ pub mod display;
 pub mod environment;
 pub mod forward;
 pub mod gbuffer;
-pub mod impostor;
+pub mod probe;
 pub mod shadow;
 
 use std::sync::OnceLock;

@@ -1,4 +1,4 @@
-//! Adds to surfaces that a probe serves what its surroundings send.
+//! Adds to surfaces that a probe serves what its surroundings send: by `impostor`, by `area-cube`, or the errors of searches instead.
 
 use std::sync::OnceLock;
 
@@ -27,8 +27,8 @@ pub enum Drawn {
     AreaCube,
 }
 
-/// The pipelines, one that looks lobes up once and one that samples them.
-pub struct ImpostorPass {
+/// The pipelines, each compiled when first drawn with.
+pub struct ProbePass {
     device: wgpu::Device,
     format: wgpu::TextureFormat,
     probe_layout: wgpu::BindGroupLayout,
@@ -44,14 +44,14 @@ pub struct ImpostorPass {
     tables: OnceLock<wgpu::Buffer>,
 }
 
-impl ImpostorPass {
+impl ProbePass {
     /// Compiles nothing yet. The targets are of `format`, which can be blended.
     pub fn new(
         gpu: &Gpu,
         scene_layout: &wgpu::BindGroupLayout,
         gbuffer_layout: &wgpu::BindGroupLayout,
         format: wgpu::TextureFormat,
-    ) -> ImpostorPass {
+    ) -> ProbePass {
         let device = &gpu.device;
         let uniform = wgpu::BufferBindingType::Uniform;
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
@@ -64,7 +64,7 @@ impl ImpostorPass {
             label: Some("effort"),
             entries: &[buffer_entry(0, fragment, uniform)],
         });
-        ImpostorPass {
+        ProbePass {
             device: device.clone(),
             format,
             probe_layout: probe_layout(device),
@@ -123,7 +123,7 @@ impl ImpostorPass {
             blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
             write_mask: wgpu::ColorWrites::ALL,
         };
-        fullscreen_pipeline(&self.device, "impostor", &layouts, module, target, constants)
+        fullscreen_pipeline(&self.device, "probe", &layouts, module, target, constants)
     }
 
     /// A probe as group 2.
@@ -204,7 +204,7 @@ impl ImpostorPass {
         [left, top, width, height]: [u32; 4],
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("impostor"),
+            label: Some("probe"),
             color_attachments: &[attachment(target, wgpu::LoadOp::Load)],
             ..Default::default()
         });
@@ -221,7 +221,7 @@ impl ImpostorPass {
     }
 }
 
-/// Layout of what `impostor.wgsl` reads at group 2.
+/// Layout of what `look.wgsl` and `area_cube.wgsl` read at group 2.
 fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let (fragment, cube) = (wgpu::ShaderStages::FRAGMENT, wgpu::TextureViewDimension::Cube);
     let float = |filterable| wgpu::TextureSampleType::Float { filterable };

@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use crate::device::Gpu;
 use crate::error::RenderError;
-use crate::pass::display::{self, Display};
+use crate::pass::display::{self, Display, Shown};
 use crate::pass::target;
 use crate::passes::Passes;
 use crate::renderer::check_size;
@@ -49,8 +49,8 @@ impl Plate {
             upload(gpu, radiance, picture);
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let sum = (&radiance.create_view(&Default::default()), 1);
-        passes.display.encode(gpu, &mut encoder, sum, output, display);
+        let shown = Shown { sum: &radiance.create_view(&Default::default()), frames: 1, before: None };
+        passes.display.encode(gpu, &mut encoder, shown, output, display);
         gpu.queue.submit([encoder.finish()]);
         self.shown = Some((picture.clone(), display));
         Ok(gpu.check()?)

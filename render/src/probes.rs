@@ -90,13 +90,22 @@ pub(crate) struct GpuProbes {
 /// One of them.
 pub(crate) struct GpuProbe {
     pub maps: EnvironmentMaps,
-    /// What is kept of distances, a layer for each face.
+    /// Those of its second layer.
+    pub behind: Option<Behind>,
+    /// What is kept of distances, an array layer for each face, those of the second layer of surfaces after the first.
     pub inverse_depths: wgpu::TextureView,
     /// Bounds of them, by levels.
     pub inverse_bounds: wgpu::TextureView,
     pub data: wgpu::Buffer,
     /// The texels of its coarse cubes, never empty.
     pub coarse: wgpu::Buffer,
+}
+
+/// The second layer of surfaces.
+pub(crate) struct Behind {
+    pub maps: EnvironmentMaps,
+    /// As of the first; distances are with those of the first.
+    pub data: wgpu::Buffer,
 }
 
 impl GpuProbes {
@@ -123,39 +132,56 @@ pub(crate) fn places(gpu: &Gpu, probes: Probes<'_>) -> wgpu::Buffer {
 impl GpuProbe {
     fn new(gpu: &Gpu, index: u32, probe: &Probe<'_>) -> Result<GpuProbe, RenderError> {
         let unfit = || RenderError::Preparation("a probe has no maps; prepare it again".into());
-        let maps = EnvironmentMaps::uploaded(gpu, probe.maps).ok_or_else(unfit)?;
-        let (face, inverse) = (probe.distances.face(), probe.maps.floats("distances"));
-        if inverse.len() as u64 != 6 * u64::from(face).pow(2) || face > gpu.device.limits().max_texture_dimension_2d {
+        let face = probe.distances.face();
+        let cells = Cells::new(face);
+        let layers: Vec<Probe<'_>> = [Some(*probe), probe.behind()].into_iter().flatten().collect();
+        if face > gpu.device.limits().max_texture_dimension_2d {
             return Err(unfit());
         }
-        let (cells, kept) = (Cells::new(face), probe.maps.floats("bounds"));
-        if kept.len() != 2 * cells.count() {
-            return Err(unfit());
-        }
-        let extent = probe.extent;
-        let data = ProbeData {
-            middle: probe.middle,
-            index,
-            low: extent.low,
-            near: extent.near,
-            high: extent.high,
-            far: extent.far,
-            radius: extent.radius,
-            scale: maps.scale,
-            face,
-            radiance_mips: maps.radiance.mip_level_count() as f32,
-            prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
-            source_count: maps.source_count,
-            wide_alpha: maps.wide_alpha,
-            pad0: 0,
+        let has_all = |layer: &Probe<'_>| {
+            let (depths, bounds) = (layer.maps.floats("distances").len(), layer.maps.floats("bounds").len());
+            depths as u64 == 6 * u64::from(face).pow(2) && bounds == 2 * cells.count()
         };
+        if !layers.iter().all(has_all) {
+            return Err(unfit());
+        }
+        let mut uploaded = Vec::new();
+        for layer in &layers {
+            let maps = EnvironmentMaps::uploaded(gpu, layer.maps).ok_or_else(unfit)?;
+            let data = data(index, layer, &maps, layers.len() as u32);
+            uploaded.push((maps, gpu.buffer("probe", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM)));
+        }
+        let behind = if uploaded.len() > 1 { uploaded.pop().map(|(maps, data)| Behind { maps, data }) } else { None };
+        let (maps, data) = uploaded.pop().ok_or_else(unfit)?;
         Ok(GpuProbe {
-            inverse_depths: depths(gpu, face, inverse),
+            inverse_depths: depths(gpu, face, &layers),
             coarse: coarse(gpu, probe),
-            inverse_bounds: bounds(gpu, &cells, kept),
-            data: gpu.buffer("probe", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM),
+            inverse_bounds: bounds(gpu, &cells, &layers),
+            data,
             maps,
+            behind,
         })
+    }
+}
+
+/// A layer of surfaces of a probe for shaders.
+fn data(index: u32, layer: &Probe<'_>, maps: &EnvironmentMaps, layers: u32) -> ProbeData {
+    let extent = layer.extent;
+    ProbeData {
+        middle: layer.middle,
+        index,
+        low: extent.low,
+        near: extent.near,
+        high: extent.high,
+        far: extent.far,
+        radius: extent.radius,
+        scale: maps.scale,
+        face: layer.distances.face(),
+        radiance_mips: maps.radiance.mip_level_count() as f32,
+        prefiltered_mips: maps.prefiltered.mip_level_count() as f32,
+        source_count: maps.source_count,
+        wide_alpha: maps.wide_alpha,
+        layers,
     }
 }
 
@@ -167,28 +193,33 @@ fn coarse(gpu: &Gpu, probe: &Probe<'_>) -> wgpu::Buffer {
     gpu.buffer("coarse cubes", bytemuck::cast_slice(numbers), wgpu::BufferUsages::STORAGE)
 }
 
-fn depths(gpu: &Gpu, face: u32, inverse: &[f32]) -> wgpu::TextureView {
-    let texture = layers(gpu, "inverse depths", face, 1, wgpu::TextureFormat::R32Float);
-    write(gpu, &texture, 0, inverse);
-    layers_view(&texture)
+fn depths(gpu: &Gpu, face: u32, layers: &[Probe<'_>]) -> wgpu::TextureView {
+    let texture = faces(gpu, "inverse depths", [face, layers.len() as u32], 1, wgpu::TextureFormat::R32Float);
+    for (place, layer) in (0..).zip(layers) {
+        write(gpu, &texture, [place, 0], layer.maps.floats("distances"));
+    }
+    faces_view(&texture)
 }
 
 /// A mip map for each level of cells from 1 on; one texel that nothing reads where there are none.
-fn bounds(gpu: &Gpu, cells: &Cells, kept: &[f32]) -> wgpu::TextureView {
-    let texture =
-        layers(gpu, "inverse bounds", cells.width(1).max(1), cells.top.max(1), wgpu::TextureFormat::Rg32Float);
-    for level in 1..=cells.top {
-        let (first, count) = (2 * cells.index(level, 0, 0, 0), 12 * (cells.width(level) as usize).pow(2));
-        write(gpu, &texture, level - 1, &kept[first..first + count]);
+fn bounds(gpu: &Gpu, cells: &Cells, layers: &[Probe<'_>]) -> wgpu::TextureView {
+    let [width, mips] = [cells.width(1).max(1), cells.top.max(1)];
+    let texture = faces(gpu, "inverse bounds", [width, layers.len() as u32], mips, wgpu::TextureFormat::Rg32Float);
+    for (place, layer) in (0..).zip(layers) {
+        let kept = layer.maps.floats("bounds");
+        for level in 1..=cells.top {
+            let (first, count) = (2 * cells.index(level, 0, 0, 0), 12 * (cells.width(level) as usize).pow(2));
+            write(gpu, &texture, [place, level - 1], &kept[first..first + count]);
+        }
     }
-    layers_view(&texture)
+    faces_view(&texture)
 }
 
-/// Six layers.
-fn layers(gpu: &Gpu, label: &str, width: u32, mips: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+/// Six faces for each layer of surfaces.
+fn faces(gpu: &Gpu, label: &str, [width, layers]: [u32; 2], mips: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width, height: width, depth_or_array_layers: 6 },
+        size: wgpu::Extent3d { width, height: width, depth_or_array_layers: 6 * layers },
         mip_level_count: mips,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -198,19 +229,23 @@ fn layers(gpu: &Gpu, label: &str, width: u32, mips: u32, format: wgpu::TextureFo
     })
 }
 
-/// Writes all layers of a mip map.
-fn write(gpu: &Gpu, texture: &wgpu::Texture, mip: u32, numbers: &[f32]) {
+/// Writes the faces of a layer of surfaces, of a mip map.
+fn write(gpu: &Gpu, texture: &wgpu::Texture, [layer, mip]: [u32; 2], numbers: &[f32]) {
     let width = (texture.width() >> mip).max(1);
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     gpu.queue.write_texture(
-        wgpu::TexelCopyTextureInfo { mip_level: mip, ..texture.as_image_copy() },
+        wgpu::TexelCopyTextureInfo {
+            mip_level: mip,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: 6 * layer },
+            ..texture.as_image_copy()
+        },
         bytemuck::cast_slice(numbers),
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(texel * width), rows_per_image: Some(width) },
         wgpu::Extent3d { width, height: width, depth_or_array_layers: 6 },
     );
 }
 
-fn layers_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+fn faces_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()

@@ -13,6 +13,8 @@ mod bumps;
 mod catcher;
 #[path = "images/environment.rs"]
 mod environment;
+#[path = "images/fade.rs"]
+mod fade;
 #[path = "images/losses.rs"]
 mod losses;
 #[path = "images/plate.rs"]
@@ -56,6 +58,7 @@ fn main() {
     trials.extend(bumps::trials());
     trials.extend(catcher::trials());
     trials.extend(environment::trials());
+    trials.extend(fade::trials());
     trials.extend(losses::trials());
     trials.extend(plate::trials());
     trials.extend(processor::trials());

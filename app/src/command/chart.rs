@@ -18,7 +18,7 @@ use glam::UVec2;
 
 use super::lighting as presets;
 use crate::failure::{Exit, Failure, printable};
-use crate::report::bench::{drawing, page};
+use crate::report::bench::{Look, Measure, drawing, page};
 use crate::window::Folders;
 use crate::{interrupt, rig, source, value};
 
@@ -62,6 +62,12 @@ pub struct Args {
     /// Folder of what is kept [default: the user's cache]
     #[arg(long, value_name = "FOLDER")]
     cache: Option<PathBuf>,
+    /// Setting whose values have a mark each in the chart, of methods that have it [default: a mark for each method]
+    #[arg(long, value_name = "KEY")]
+    series: Option<String>,
+    /// Error that the chart shows; the table has all
+    #[arg(long, value_name = "MEASURE", value_enum, default_value_t)]
+    measure: Measure,
     /// Chart to write, .svg
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -77,6 +83,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let chosen = methods(&args.methods)?;
     let candidates = candidates(&chosen, &args.sweep)?;
     let truth = truth(&args.truth)?;
+    if let Some(key) = &args.series {
+        known(&chosen, key)?;
+    }
     let shots = shots(&args, err)?;
     let cache = cache(&args)?;
     let stop = interrupt::watch().map_err(Failure::resources)?;
@@ -121,6 +130,21 @@ fn candidates(methods: &[&dyn Method], sweeps: &[Sweep]) -> Result<Vec<Candidate
         list.extend(all.into_iter().map(|settings| Candidate { method: chosen.info().id, settings }));
     }
     Ok(list)
+}
+
+/// Refuses a setting that none of the methods has.
+fn known(methods: &[&dyn Method], key: &str) -> Result<(), Failure> {
+    let mut all: Vec<&str> =
+        methods.iter().flat_map(|method| method.info().params.iter().map(|spec| spec.key)).collect();
+    if all.contains(&key) {
+        return Ok(());
+    }
+    all.sort_unstable();
+    all.dedup();
+    Err(Failure::usage(format!(
+        "--series {key}: the chosen methods have no such setting; there are: {}",
+        all.join(", ")
+    )))
 }
 
 /// Settings of the reference.
@@ -276,10 +300,13 @@ fn failure(scene: &str, error: &BenchError) -> Failure {
 
 fn write(args: &Args, records: &[Record], out: &mut dyn Write) -> Result<(), Failure> {
     let command = std::env::args().skip(1).collect::<Vec<_>>().join(" ");
-    let files = [(&args.out, drawing as fn(&[Record]) -> String), (&args.csv, bench::csv as fn(&[Record]) -> String)];
-    let html = |records: &[Record]| page(records, &lighting::methods(), &format!("burnish {command}"));
-    let texts = files.iter().filter_map(|(file, text)| file.as_ref().map(|file| (file, text(records))));
-    for (file, text) in texts.chain(args.html.as_ref().map(|file| (file, html(records)))) {
+    let look = Look { measure: args.measure, series: args.series.clone() };
+    let svg = || drawing(records, &look);
+    let csv = || bench::csv(records);
+    let html = || page(records, &lighting::methods(), &look, &format!("burnish {command}"));
+    let files: [(&Option<PathBuf>, &dyn Fn() -> String); 3] =
+        [(&args.out, &svg), (&args.csv, &csv), (&args.html, &html)];
+    for (file, text) in files.into_iter().filter_map(|(file, text)| Some((file.as_ref()?, text()))) {
         write_atomic(file, text.as_bytes()).map_err(Failure::resources)?;
         writeln!(out, "wrote {}: {} measurements", file.display(), records.len())?;
     }

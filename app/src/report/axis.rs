@@ -37,15 +37,24 @@ impl Axis {
 
     /// Whole decades around values, at least one; those that are not above 0 do not count.
     pub fn decades(title: &'static str, values: impl Iterator<Item = f64>) -> Axis {
-        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        for value in values.filter(|v| v.is_finite() && *v > 0.0) {
-            (least, most) = (least.min(value), most.max(value));
-        }
-        if most <= 0.0 {
-            (least, most) = (1.0, 1.0);
-        }
+        let (least, most) = ends(values);
         let (from, to) = (least.log10().floor(), most.log10().ceil());
         Axis::log(title, 10f64.powf(from), 10f64.powf(to.max(from + 1.0)))
+    }
+
+    /// From the 1, 2 or 5 of a decade below values to that above, at least a step; ticks are those, or powers of ten over more than two
+    /// decades. Values that are not above 0 do not count.
+    pub fn around(title: &'static str, values: impl Iterator<Item = f64>) -> Axis {
+        let (least, most) = ends(values);
+        let (first, last) = (least.log10().floor() as i32, most.log10().ceil() as i32 + 1);
+        let steps: Vec<f64> =
+            (first..=last).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power))).collect();
+        // Powers are rounded.
+        let below = steps.iter().rposition(|step| *step <= least * (1.0 + 1e-9)).unwrap_or(0);
+        let above = steps.iter().position(|step| *step >= most * (1.0 - 1e-9)).unwrap_or(0).max(below + 1);
+        let (from, to) = (steps[below], steps[above]);
+        let all = Axis::log(title, from, to);
+        if to > 100.0 * from { all } else { Axis { ticks: steps[below..=above].to_vec(), ..all } }
     }
 
     /// From `-to` to `to` in decades, linear within `linear` of 0; both powers of ten.
@@ -74,6 +83,13 @@ impl Axis {
             }
         }
     }
+}
+
+/// Least and greatest of the values above 0; 1 where there are none.
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let positive = values.filter(|v| v.is_finite() && *v > 0.0);
+    let ends = positive.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
+    if ends.1 > 0.0 { ends } else { (1.0, 1.0) }
 }
 
 /// A tick in words: at most as many digits as it needs.
@@ -111,6 +127,20 @@ mod tests {
         assert!((axis.from - 0.01).abs() < 1e-9 && (axis.to - 10.0).abs() < 1e-9);
         assert!(Axis::decades("x", [].into_iter()).to > 1.0);
         assert_eq!(Axis::decades("x", [10.0].into_iter()).ticks.len(), 2);
+    }
+
+    #[test]
+    fn an_axis_around_values_is_as_narrow_as_its_ticks_allow() {
+        let ticks = |values: &[f64]| {
+            let axis = Axis::around("x", values.iter().copied());
+            assert!(values.iter().all(|v| !(*v > 0.0) || (0.0..=1.0).contains(&axis.at(*v))));
+            (axis.from, axis.to, axis.ticks.len())
+        };
+        assert_eq!(ticks(&[215.0, 470.0]), (200.0, 500.0, 2));
+        assert_eq!(ticks(&[0.41, 55.0]).2, 7);
+        assert_eq!(ticks(&[1e-3, 2.0, f64::NAN, 0.0]).2, 4);
+        assert_eq!(ticks(&[10.0]), (10.0, 20.0, 2));
+        assert_eq!(ticks(&[]), (1.0, 2.0, 2));
     }
 
     #[test]

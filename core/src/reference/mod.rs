@@ -37,7 +37,7 @@ pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};
 pub use settings::{COMPARED_PARAMS, Contribution, Options, PARAMS, is_spectral};
-pub use world::World;
+pub use world::{Sighted, World};
 
 /// Id of the method, as documents name it.
 pub const ID: &str = "reference";

@@ -46,6 +46,19 @@ struct Placed {
     cut: bool,
 }
 
+/// A surface on a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighted {
+    /// Metres to it.
+    pub distance: f32,
+    /// Its instance.
+    pub instance: u32,
+    /// The ray meets its back.
+    pub from_behind: bool,
+    /// Its back is as good as its front.
+    pub two_sided: bool,
+}
+
 /// Which surfaces a ray sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sight {
@@ -184,12 +197,14 @@ impl World {
         self.closest(&ray, Sight::Light, 0).map(|hit| hit.t)
     }
 
-    /// Metres to the nearest surface in a direction, and whether it is met from behind, where its material has no back.
-    pub fn met_from_behind(&self, origin: Vec3, direction: Vec3) -> Option<(f32, bool)> {
+    /// The nearest surface in a direction.
+    pub fn sighted(&self, origin: Vec3, direction: Vec3) -> Option<Sighted> {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
-        self.closest(&ray, Sight::Light, 0).map(|hit| {
-            let behind = Triangle::new(self, &hit).normal().dot(direction) > 0.0;
-            (hit.t, behind && !self.instances[hit.instance as usize].two_sided)
+        self.closest(&ray, Sight::Light, 0).map(|hit| Sighted {
+            distance: hit.t,
+            instance: hit.instance,
+            from_behind: Triangle::new(self, &hit).normal().dot(direction) > 0.0,
+            two_sided: self.instances[hit.instance as usize].two_sided,
         })
     }
 

@@ -200,7 +200,7 @@ shared! {
         factor: f32,
         tone: u32,
         mode: u32,
-        pad0: u32,
+        before: f32,
     }
 }
 
@@ -305,7 +305,7 @@ shared! {
         prefiltered_mips: f32,
         source_count: u32,
         wide_alpha: f32,
-        pad0: u32,
+        layers: u32,
     }
 }
 

@@ -97,7 +97,8 @@ struct DisplayData {
     tone: u32,
     // One of the DISPLAY_ constants.
     mode: u32,
-    pad0: u32,
+    // The same for the picture that fades out.
+    before: f32,
 }
 
 // A small bright source of the environment, in its own frame.
@@ -205,7 +206,8 @@ struct ProbeData {
     prefiltered_mips: f32,
     source_count: u32,
     wide_alpha: f32,
-    pad0: u32,
+    // Of surfaces: 2 where what lies behind them is known.
+    layers: u32,
 }
 
 const AREA_CUBE_FEW: u32 = 1u;

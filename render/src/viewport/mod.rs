@@ -196,8 +196,8 @@ impl Viewport {
                 return Err(error);
             }
             if let (Shown::Still, Some((_, still))) = (self.shown, &mut self.full) {
-                // Something was prepared anew: the picture stays until there is a better one as large.
-                still.restart();
+                // Something was prepared anew: the picture stays until there is a better one as large, and fades into it.
+                still.replace(&passes);
                 self.stale = was_stale;
             }
         }
@@ -344,9 +344,9 @@ impl Viewport {
                     self.loader.refined(environment, *maps);
                 }
                 self.resident = Some(self.loader.load(&old.scene, old.masking, &self.lighting, Some(old))?);
-                // The picture on the screen stays until there is a better one as large.
+                // The picture on the screen stays until there is a better one as large, and fades into it.
                 if let Some((_, still)) = &mut self.full {
-                    still.restart();
+                    if self.shown == Shown::Still { still.replace(passes) } else { still.restart() }
                 }
                 Ok(true)
             }
@@ -357,11 +357,14 @@ impl Viewport {
     fn show(&self, passes: &Passes, display: Display) {
         let Some(canvas) = self.canvas() else { return };
         let mut encoder = passes.gpu.device.create_command_encoder(&Default::default());
-        let (sum, frames) = match (self.shown, &self.full) {
-            (Shown::Still, Some((_, still))) => (&still.sums.texture().create_view(&Default::default()), still.frames),
-            _ => (&canvas.targets.frame, 1),
-        };
-        passes.display.encode(&passes.gpu, &mut encoder, (sum, frames), &canvas.output, display);
+        let still = self.full.as_ref().map(|(_, still)| still).filter(|_| self.shown == Shown::Still);
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let sum = still.map(|still| (view(still.sum().0), still.sum().1));
+        let fading = still.and_then(Still::fading).map(|(sum, frames, weight)| (view(sum), frames, weight));
+        let (sum, frames) = sum.as_ref().map_or((&canvas.targets.frame, 1), |(sum, frames)| (sum, *frames));
+        let before = fading.as_ref().map(|(sum, frames, weight)| (sum, *frames, *weight));
+        let shown = display::Shown { sum, frames, before };
+        passes.display.encode(&passes.gpu, &mut encoder, shown, &canvas.output, display);
         passes.gpu.queue.submit([encoder.finish()]);
     }
 
@@ -382,8 +385,9 @@ impl Viewport {
     /// Starts to read the picture; `None` unless it is at rest.
     pub fn read(&self) -> Option<PendingPicture> {
         let (canvas, still) = self.full.as_ref().filter(|(_, still)| still.settled())?;
-        let reading = Reading::start(&self.passes().gpu, still.sums.texture());
-        Some(PendingPicture { reading, size: canvas.targets.size, frames: still.frames })
+        let (sum, frames) = still.sum();
+        let reading = Reading::start(&self.passes().gpu, sum);
+        Some(PendingPicture { reading, size: canvas.targets.size, frames })
     }
 
     /// Scene-linear radiance of the picture under a point, 0 to 1 from its top left: the mean of its frames.
@@ -398,7 +402,8 @@ impl Viewport {
         let pixel = (at * size.as_vec2()).as_uvec2().min(size - 1);
         let texel = match (self.shown, &self.full) {
             (Shown::Still, Some((_, still))) => {
-                read_texel(gpu, still.sums.texture(), pixel)? / still.frames.max(1) as f32
+                let (sum, frames) = still.sum();
+                read_texel(gpu, sum, pixel)? / frames.max(1) as f32
             }
             _ => read_texel(gpu, canvas.targets.frame.texture(), pixel)?,
         };

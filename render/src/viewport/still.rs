@@ -15,11 +15,16 @@ use crate::resident::Resident;
 /// Frames that are averaged. The picture is settled after them.
 pub(crate) const FRAMES: u32 = 16;
 
+/// Frames over which a picture fades into one that is lit otherwise.
+const FADE: u32 = 8;
+
 /// Sums and how far they are.
 pub(crate) struct Still {
-    pub sums: Sums,
-    /// Whole frames in the sums; after a restart still those of the picture before.
+    sums: Sums,
+    /// Whole frames in what is shown; after a restart still those of the picture before.
     pub frames: u32,
+    /// The sum of a picture that fades out, with its frames.
+    before: Option<(wgpu::Texture, u32)>,
     /// Whole frames since the restart.
     done: u32,
     current: Option<Current>,
@@ -40,13 +45,39 @@ fn order(n: u32) -> u32 {
 
 impl Still {
     pub fn new(passes: &Passes, canvas: &Canvas) -> Still {
-        Still { sums: Sums::new(&passes.gpu, canvas.targets.size), frames: 0, done: 0, current: None }
+        Still { sums: Sums::new(&passes.gpu, canvas.targets.size), frames: 0, before: None, done: 0, current: None }
     }
 
     /// Starts anew. The sums stay what they are until the first frame is whole.
     pub fn restart(&mut self) {
         self.done = 0;
         self.current = None;
+        self.before = None;
+    }
+
+    /// Starts anew with the same view of the same surfaces: the picture fades into the next.
+    pub fn replace(&mut self, passes: &Passes) {
+        let before = match self.before.take() {
+            // Nothing has come after it yet.
+            Some(before) if self.done == 0 => Some(before),
+            _ => (self.frames > 0).then(|| (self.sums.take(&passes.gpu), self.frames)),
+        };
+        self.restart();
+        self.before = before;
+    }
+
+    /// The sum that is shown, and its frames.
+    pub fn sum(&self) -> (&wgpu::Texture, u32) {
+        match &self.before {
+            Some((sum, frames)) if self.done == 0 => (sum, *frames),
+            _ => (self.sums.texture(), self.frames),
+        }
+    }
+
+    /// What fades out beside [`Still::sum`]: sum, frames and weight.
+    pub fn fading(&self) -> Option<(&wgpu::Texture, u32, f32)> {
+        let (sum, frames) = self.before.as_ref().filter(|_| (1..FADE).contains(&self.done))?;
+        Some((sum, *frames, 1.0 - self.done as f32 / FADE as f32))
     }
 
     /// There is a whole frame of the present scene.
@@ -102,6 +133,9 @@ impl Still {
         self.done += 1;
         self.frames = self.done;
         self.current = None;
+        if self.done >= FADE {
+            self.before = None;
+        }
         Ok(())
     }
 }

@@ -43,7 +43,9 @@ pub fn trials() -> Vec<Trial> {
             same_with_probes(&area_cube::AreaCube, &[("sum", sum), ("texels", texels), ("correction", correction)])
         })
     });
-    classical.chain(impostor).chain(area_cube).collect()
+    let layers =
+        trial("impostor is the same on device and processor: through two layers", &[Need::Gpu], same_with_layers);
+    classical.chain(impostor).chain(area_cube).chain([layers]).collect()
 }
 
 /// A rough body in a room, with two probes that fade into each other on it. Of what no probe serves the device has filtered
@@ -58,6 +60,25 @@ fn same_with_probes(method: &'static dyn Method, given: &[(&str, &str)]) {
         settings.set(key, value).expect("a setting");
     }
     assert_same(scene, method, &settings);
+}
+
+/// A body that mirrors what a crate hides from the probe, which stands behind that.
+fn same_with_layers() {
+    let mut scene = gallery::open("crate?roughness=0.2").expect("in the gallery");
+    scene.environment = Some(Arc::new(sky()));
+    scene.probes = vec![Probe { position: Some(Vec3::new(0.8, -0.7, -0.4)), ..Probe::default() }];
+    let mut settings = Settings::new(impostor::PARAMS);
+    for (key, value) in [("resolution", "64"), ("probe-paths", "4"), ("samples", "0"), ("solver", "march")] {
+        settings.set(key, value).expect("a setting");
+    }
+    let [one, two] = ["1", "2"].map(|layers| {
+        settings.set("layers", layers).expect("a setting");
+        assert_same(scene.clone(), &impostor::Impostor, &settings)
+    });
+    let sum = |texels: &mut dyn Iterator<Item = Vec3>| texels.map(Vec3::element_sum).sum::<f32>();
+    let apart = sum(&mut one.iter().zip(&two).map(|(a, b)| (a - b).abs())) / sum(&mut one.iter().copied());
+    println!("the second layer changes {apart} of the light");
+    assert!(apart > 0.05, "the second layer changes {apart} of the light: nothing is compared");
 }
 
 /// Means within 0.4 %, texels within 1.5 % in the mean: shadow maps, mip maps and the texture units' eight bits between
@@ -79,8 +100,8 @@ pub fn assert_classical_same(scene: Scene, samples: &str) {
     assert_same(scene, &classical::Classical, &settings);
 }
 
-/// A scene lit by a method is the same on both.
-fn assert_same(scene: Scene, method: &'static dyn Method, settings: &Settings) {
+/// A scene lit by a method is the same on both; the processor's texels that were compared.
+fn assert_same(scene: Scene, method: &'static dyn Method, settings: &Settings) -> Vec<Vec3> {
     let scene = Arc::new(scene);
     let layers = Layers::of(method, settings.clone());
     let world = World::new(&scene, Options::new(settings));
@@ -98,6 +119,7 @@ fn assert_same(scene: Scene, method: &'static dyn Method, settings: &Settings) {
     assert!((ratio - 1.0).abs().max_element() < 0.004, "means {a} and {b}, ratio {ratio}");
     let apart = texels().map(|(a, b)| (a - b).abs().element_sum()).sum::<f32>() / (count * a.element_sum());
     assert!(apart < 0.015, "texels are {apart} of the mean apart");
+    texels().map(|(_, b)| b).collect()
 }
 
 /// A pixel, of which the corners lie on the subject.

@@ -5,6 +5,7 @@ mod plot;
 use std::fmt::Write as _;
 
 use burnish_core::lighting::Method;
+use burnish_core::measure::Errors;
 use burnish_core::measure::bench::{Record, Region};
 
 use super::chart::Marker;
@@ -32,13 +33,58 @@ fn by_scene(records: &[Record]) -> Vec<Vec<&Record>> {
     scenes
 }
 
+/// What errors a drawing tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Measure {
+    /// Mean of squares relative to those of the reference.
+    #[default]
+    Relmse,
+    /// Mean of the FLIP map.
+    Flip,
+}
+
+impl Measure {
+    fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Measure::Relmse => errors.relmse,
+            Measure::Flip => errors.flip,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Measure::Relmse => "relMSE",
+            Measure::Flip => "FLIP",
+        }
+    }
+
+    /// Title of an axis of errors on a region.
+    fn title(self, region: Option<Region>) -> &'static str {
+        match (self, region) {
+            (Measure::Relmse, Some(Region::Frame)) => "relMSE of the frame",
+            (Measure::Relmse, _) => "relMSE on the subject",
+            (Measure::Flip, Some(Region::Frame)) => "FLIP of the frame",
+            (Measure::Flip, _) => "FLIP on the subject",
+        }
+    }
+}
+
+/// What the drawing shows of records.
+#[derive(Clone, Debug, Default)]
+pub struct Look {
+    /// The errors.
+    pub measure: Measure,
+    /// The setting whose values have a mark each, where a method has it; else methods have one.
+    pub series: Option<String>,
+}
+
 /// All scenes as one drawing that stands alone, with its style inside.
-pub fn drawing(records: &[Record]) -> String {
-    Panels::new(&by_scene(records)).standalone(include_str!("../style.css"))
+pub fn drawing(records: &[Record], look: &Look) -> String {
+    Panels::new(&by_scene(records), look).standalone(include_str!("../style.css"))
 }
 
 /// A page with the drawing, tables of all figures and what each method does; no scripts, nothing to load.
-pub fn page(records: &[Record], methods: &[&dyn Method], command: &str) -> String {
+pub fn page(records: &[Record], methods: &[&dyn Method], look: &Look, command: &str) -> String {
     let scenes = by_scene(records);
     let mut html = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     html +=
@@ -53,7 +99,7 @@ pub fn page(records: &[Record], methods: &[&dyn Method], command: &str) -> Strin
          <p>Made by <code>{}</code></p>\n<figure>{}</figure>\n",
         env!("CARGO_PKG_VERSION"),
         escape(command),
-        Panels::new(&scenes).svg()
+        Panels::new(&scenes, look).svg()
     );
     for scene in &scenes {
         html += &section(scene);
@@ -95,9 +141,7 @@ fn section(scene: &[&Record]) -> String {
     for region in Region::ALL {
         let Some((_, floor)) = first.of(region) else { continue };
         let titles = ["method and settings", "relMSE", "FLIP", "FLIP, 99 %", "bias, %", "difference, %", "worst 1 %"];
-        let measures = |e: &burnish_core::measure::Errors| {
-            [e.relmse, e.flip, e.flip_p99, 100.0 * e.bias, 100.0 * e.difference, e.worst]
-        };
+        let measures = |e: &Errors| [e.relmse, e.flip, e.flip_p99, 100.0 * e.bias, 100.0 * e.difference, e.worst];
         let floors = measures(&floor);
         let line = |r: &&Record| {
             let found = r.of(region).map_or([f64::NAN; 6], |(errors, _)| measures(&errors));
@@ -146,10 +190,8 @@ fn label(record: &Record, varied: &[(String, String)]) -> String {
 
 #[cfg(test)]
 pub mod tests {
-    use burnish_core::lighting::METHODS;
-    use burnish_core::measure::Errors;
-
     use super::*;
+    use burnish_core::lighting::METHODS;
 
     pub fn record(scene: &str, method: &str, samples: u32, ms: f64, relmse: f64) -> Record {
         let errors = Errors { relmse, flip: 0.1, flip_p99: 0.3, bias: -0.02, difference: 0.05, worst: 3.0 * relmse };
@@ -189,7 +231,7 @@ pub mod tests {
             record("gallery:ring", "classical", 64, 90.0, 5e-5),
             record("a <b>", "reference", 1, 300.0, 0.4),
         ];
-        let html = page(&records, METHODS, "burnish chart <x>");
+        let html = page(&records, METHODS, &Look::default(), "burnish chart <x>");
         assert_eq!(html.matches("<h2>").count(), 3);
         assert!(html.contains("classical, samples 64") && html.contains("a &lt;b&gt;") && !html.contains("<b>\""));
         assert!(html.contains("reference of 512 paths a pixel, with clamp=10."));

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use glam::{Vec2, Vec3};
 
 use super::study::apart;
-use super::{Effort, Found, Show, Solver, error_shown, level, shown, solve};
+use super::{Effort, Found, Show, Solver, error_shown, follow, level, shown};
 use crate::job::Handle;
 use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
 use crate::lighting::probe::{self, Defaults, Probe, Probes, Sites};
@@ -90,6 +90,15 @@ pub const PATHS: ParamSpec = ParamSpec {
     affects: Affects::Prepare,
 };
 
+const LAYERS: ParamSpec = ParamSpec {
+    key: "layers",
+    label: "Layers",
+    unit: "",
+    kind: ParamKind::Integer { min: 1, max: 2, default: 1 },
+    help: "2 records what lies behind the surfaces that the probe sees too: a search that found nothing goes on there.",
+    affects: Affects::Prepare,
+};
+
 /// Settings of this method: the last are those of `classical`.
 pub const PARAMS: &[ParamSpec] = &[
     SOLVER,
@@ -99,6 +108,7 @@ pub const PARAMS: &[ParamSpec] = &[
     SHOW,
     RESOLUTION,
     PATHS,
+    LAYERS,
     classical::PARAMS[0],
     classical::PARAMS[1],
     classical::PARAMS[2],
@@ -155,7 +165,8 @@ impl Method for Impostor {
 
 /// The probes of a scene, from settings made of [`PARAMS`].
 pub fn sites(scene: &Scene, settings: &Settings) -> Sites {
-    Sites::new(scene, Defaults { face: whole(settings, &RESOLUTION), paths: whole(settings, &PATHS) })
+    let [face, paths, layers] = [RESOLUTION, PATHS, LAYERS].map(|spec| whole(settings, &spec));
+    Sites::new(scene, Defaults { face, paths, layers })
 }
 
 /// A whole number of the settings.
@@ -193,7 +204,8 @@ impl ShadePoint for Impostor {
         let FrameSettings { samples, .. } = FrameSettings::new(settings);
         let lobes = Lobes { samples, rotation: Vec2::new(random[0], random[1]) };
         Probes::of(prepared).shaded(point, random, |probe, x| {
-            let maps = Localised { maps: PreparedMaps::unturned(probe.maps)?, x, probe: *probe, effort };
+            let behind = probe.behind().and_then(|behind| PreparedMaps::unturned(behind.maps));
+            let maps = Localised { maps: PreparedMaps::unturned(probe.maps)?, behind, x, probe: *probe, effort };
             Some(match show {
                 Show::Light => reflected(point, &maps, lobes),
                 other => searched(point, &maps, other),
@@ -211,7 +223,7 @@ fn reflected(point: &SurfacePoint<'_>, maps: &Localised<'_>, lobes: Lobes) -> Ve
 /// The colour of the search in the mirror direction.
 fn searched(point: &SurfacePoint<'_>, maps: &Localised<'_>, show: Show) -> Vec3 {
     let r = point.mirrored();
-    let found = maps.follow(r);
+    let (found, _) = maps.follow(r);
     if show != Show::Error {
         return shown(&found, show);
     }
@@ -225,35 +237,38 @@ fn searched(point: &SurfacePoint<'_>, maps: &Localised<'_>, show: Show) -> Vec3 
 /// The maps of a probe as a point beside its middle sees them.
 struct Localised<'a> {
     maps: PreparedMaps<'a>,
+    /// Of its second layer.
+    behind: Option<PreparedMaps<'a>>,
     probe: Probe<'a>,
     /// From the middle of the probe.
     x: Vec3,
     effort: Effort,
 }
 
-impl Localised<'_> {
-    fn follow(&self, direction: Vec3) -> Found {
-        solve(&self.probe.distances, &self.probe.extent, self.x, direction, &self.effort)
+impl<'a> Localised<'a> {
+    fn follow(&self, direction: Vec3) -> (Found, usize) {
+        follow(&self.probe, self.x, direction, &self.effort)
     }
 
-    /// Where to look, and how much nearer than to the middle the place is: `t / distance`, 1 without a place.
-    fn look(&self, direction: Vec3) -> (Vec3, f32) {
-        let found = self.follow(direction);
+    /// In which maps to look and where, and how much nearer than to the middle the place is: `t / distance`, 1 without a place.
+    fn look(&self, direction: Vec3) -> (&PreparedMaps<'a>, Vec3, f32) {
+        let (found, layer) = self.follow(direction);
         let distance = (self.x + found.t * direction).length();
         let nearer = if found.is_hit && distance > 0.0 { found.t / distance } else { 1.0 };
-        (found.direction(self.x, direction), nearer)
+        let maps = self.behind.as_ref().filter(|_| layer == 1).unwrap_or(&self.maps);
+        (maps, found.direction(self.x, direction), nearer)
     }
 }
 
 impl Maps for Localised<'_> {
     fn radiance(&self, direction: Vec3, at: f32) -> Vec3 {
-        let (seen, nearer) = self.look(direction);
-        self.maps.radiance(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
+        let (maps, seen, nearer) = self.look(direction);
+        maps.radiance(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
     }
 
     fn dimmed(&self, direction: Vec3, at: f32) -> Vec3 {
-        let (seen, nearer) = self.look(direction);
-        self.maps.dimmed(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
+        let (maps, seen, nearer) = self.look(direction);
+        maps.dimmed(seen, level(at, nearer, 1.0, self.maps.radiance_levels() - 1.0))
     }
 
     fn source_count(&self) -> usize {
@@ -278,11 +293,11 @@ impl Maps for Localised<'_> {
     }
 
     fn prefiltered(&self, direction: Vec3, at: f32) -> Vec3 {
-        let (seen, nearer) = self.look(direction);
+        let (maps, seen, nearer) = self.look(direction);
         let levels = self.maps.prefiltered_levels();
         // The lobe covers so much less of the surface: a narrower one would from the middle.
         let alpha = classical::roughness(at, levels).powi(2) * nearer;
-        self.maps.prefiltered(seen, classical::level(alpha.sqrt(), levels))
+        maps.prefiltered(seen, classical::level(alpha.sqrt(), levels))
     }
 
     fn irradiance(&self, normal: Vec3) -> Vec3 {

@@ -112,3 +112,25 @@ fn errors_of_hits_tell_searches_apart() {
     // 2.3 % end at edges of the walls, which lie between texels of 3 degrees.
     assert!(march.p95 < 0.1 && march.off < 0.03 && march.lookups > secant.lookups, "{march:?}");
 }
+
+#[test]
+fn a_second_layer_finds_what_the_first_hides() {
+    let world = World::new(&Arc::new(gallery::open("crate").unwrap()), Options::default());
+    let view = View { camera: world.scene().cameras[0].clone(), size: UVec2::splat(90), seed: 0 };
+    let of = |layers: &str| {
+        let mut settings = settings(Solver::March);
+        for (key, value) in [("layers", layers), ("resolution", "64"), ("probe-paths", "1")] {
+            settings.set(key, value).unwrap();
+        }
+        let prepared = Impostor.prepare(&world, &settings, &Handle::default()).unwrap();
+        let rays = super::super::mirror_rays(&world, &prepared, &view);
+        let effort = Effort { solver: Solver::March, refinements: 10, steps: 64, tolerance: 0.05 };
+        super::super::hit_errors(&prepared, &rays, &effort)
+    };
+    let (one, two) = (of("1"), of("2"));
+    println!("{one:?}\n{two:?}");
+    assert!(one.hidden > 0.01 && two.hidden < 0.5 * one.hidden, "{one:?} {two:?}");
+    assert!(two.misses < 0.5 * one.misses && two.lookups > one.lookups, "{one:?} {two:?}");
+    // Places that are not seen count now, and most of them are found.
+    assert!(two.off < one.off + 0.01, "{one:?} {two:?}");
+}

@@ -19,7 +19,7 @@ mod tests;
 use glam::Vec3;
 
 use crate::leaf::Leaf;
-use crate::lighting::probe::DistanceCube;
+use crate::lighting::probe::{self, DistanceCube};
 use crate::math;
 
 pub use method::{ID, Impostor, PARAMS, PATHS, RESOLUTION, effort, show, sites};
@@ -274,6 +274,16 @@ pub fn solve(distances: &impl Distances, extent: &Extent, x: Vec3, r: Vec3, effo
             None => walk.march(effort),
         },
     }
+}
+
+/// Follows the ray from `x`, relative to the middle of a probe, through what it sees; where that finds nothing, through its second layer. With
+/// the layer that is to be looked up: 0 or 1.
+pub fn follow(probe: &probe::Probe<'_>, x: Vec3, r: Vec3, effort: &Effort) -> (Found, usize) {
+    let first = solve(&probe.distances, &probe.extent, x, r, effort);
+    let Some(behind) = probe.behind().filter(|_| !first.is_hit) else { return (first, 0) };
+    let second = solve(&behind.distances, &behind.extent, x, r, effort);
+    let lookups = first.lookups + second.lookups;
+    if second.is_hit { (Found { lookups, ..second }, 1) } else { (Found { lookups, ..first }, 0) }
 }
 
 /// Level of a prefiltered cube for a lobe that is seen from `t` metres away instead of from the middle: the same solid angle

@@ -1,11 +1,13 @@
 //! How far a search is off what a ray meets.
 
+use std::sync::Arc;
+
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
 
-use super::{Effort, solve};
+use super::{Effort, follow};
 use crate::lighting::Prepared;
-use crate::lighting::probe::Probes;
+use crate::lighting::probe::{Probes, behind, surroundings};
 use crate::reference::{Eye, View, World};
 
 /// A place is another one from this share of its distance on.
@@ -22,7 +24,7 @@ pub struct MirrorRay {
     pub direction: Vec3,
     /// Metres to what it meets past the instances that the probe serves; `None` for the sky.
     pub met: Option<f32>,
-    /// The probe sees that place too, within 1 % of its distance; true for the sky.
+    /// The probe sees that place too, or has it in its second layer, within 1 % of its distance; true for the sky.
     pub is_seen: bool,
 }
 
@@ -37,7 +39,7 @@ pub struct HitErrors {
     pub p95: f32,
     /// Share of the rays without a hit, within the tolerance.
     pub misses: f32,
-    /// Share that meet what the probe does not see: no search can find that.
+    /// Share that meet what the probe does not have: no search can find that.
     pub hidden: f32,
     /// Share, of the others, that ended before or behind what they meet, by more than 1 % of its distance from the probe.
     pub off: f32,
@@ -48,18 +50,32 @@ pub struct HitErrors {
 /// The mirrored lines of sight of all pixels that show an instance which a probe of the preparation serves.
 pub fn mirror_rays(world: &World, prepared: &Prepared, view: &View) -> Vec<MirrorRay> {
     let size = view.size;
+    let probes = Probes::of(prepared);
+    // What was recorded without what is served: only a second layer asks.
+    let layered: Vec<(&Prepared, World)> = (probes.iter())
+        .filter(|probe| probe.behind().is_some())
+        .map(|probe| {
+            let around = surroundings(world.scene(), probe.maps.whole("served"));
+            (probe.maps, world.updated(&Arc::new(around), *world.options()))
+        })
+        .collect();
     let rows = (0..size.y).into_par_iter().flat_map_iter(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
     rows.filter_map(|pixel| {
         let eye = Eye::new(world, view, pixel, 0);
         let point = eye.point()?;
-        let (probe, _) = Probes::of(prepared).about(point.instance(), point.position()).into_iter().next()?;
+        let (probe, _) = probes.about(point.instance(), point.position()).into_iter().next()?;
         let direction = point.mirrored();
         let met = world.distance_past(point.position(), direction, probe.maps.whole("served"));
         let is_seen = met.is_none_or(|t| {
             let from_probe = point.position() + t * direction - probe.middle;
             let (length, toward) = (from_probe.length(), from_probe.normalize_or(direction));
             let first = world.distance_past(probe.middle, toward, probe.maps.whole("served"));
-            first.is_some_and(|first| (first - length).abs() <= OFF * length)
+            let second = || {
+                let (_, around) = layered.iter().find(|(maps, _)| std::ptr::eq(*maps, probe.maps))?;
+                Some(behind(around, probe.middle, toward)?.to)
+            };
+            let is_there = |distance: f32| (distance - length).abs() <= OFF * length;
+            first.is_some_and(is_there) || second().is_some_and(is_there)
         });
         Some(MirrorRay { instance: point.instance(), position: point.position(), direction, met, is_seen })
     })
@@ -73,7 +89,7 @@ pub fn hit_errors(prepared: &Prepared, rays: &[MirrorRay], effort: &Effort) -> H
         let about = probes.about(ray.instance, ray.position);
         let (probe, _) = about.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let x = ray.position - probe.middle;
-        let found = solve(&probe.distances, &probe.extent, x, ray.direction, effort);
+        let (found, _) = follow(&probe, x, ray.direction, effort);
         let wanted = ray.met.map_or(ray.direction, |t| x + t * ray.direction);
         let degrees = apart(found.direction(x, ray.direction), wanted);
         let off = ray.is_seen && ray.met.is_some_and(|t| (found.t - t).abs() > OFF * wanted.length());

@@ -4,6 +4,7 @@
 //! [`Sites`] says where the probes of a scene stand, [`prepare`] records what is seen from them, [`Probes`] finds those that
 //! know the surroundings of a point, with weights that change without a seam.
 
+mod behind;
 mod bounds;
 mod distances;
 pub(super) mod seen;
@@ -21,6 +22,7 @@ use crate::lighting::{Prepared, impostor::Extent};
 use crate::math;
 use crate::reference::SurfacePoint;
 
+pub use behind::{Behind, behind};
 pub use bounds::{Cells, bounds};
 pub use distances::{DistanceCube, JUMP};
 pub use seen::surroundings;
@@ -61,6 +63,24 @@ pub struct Probe<'a> {
     pub distances: DistanceCube<'a>,
 }
 
+impl<'a> Probe<'a> {
+    fn of(maps: &'a Prepared) -> Option<Probe<'a>> {
+        let [near, far, radius] = maps.vector("probe", 1).to_array();
+        let [low, high] = [2, 3].map(|i| maps.vector("probe", i));
+        Some(Probe {
+            maps,
+            middle: maps.vector("probe", 0),
+            extent: Extent { near, far, radius, low, high },
+            distances: DistanceCube::new(*maps.whole("face").first()?, maps.floats("distances"), maps.floats("bounds")),
+        })
+    }
+
+    /// Its second layer, where it was recorded: what lies behind the surfaces that it sees, and their light where nothing does.
+    pub fn behind(&self) -> Option<Probe<'a>> {
+        Probe::of(self.maps.parts().first()?)
+    }
+}
+
 impl<'a> Probes<'a> {
     /// Those of a preparation, none where it has none.
     pub fn of(prepared: &'a Prepared) -> Probes<'a> {
@@ -79,15 +99,7 @@ impl<'a> Probes<'a> {
 
     /// One by its number.
     pub fn get(&self, index: usize) -> Option<Probe<'a>> {
-        let maps = self.prepared.parts().get(index)?;
-        let [near, far, radius] = maps.vector("probe", 1).to_array();
-        let [low, high] = [2, 3].map(|i| maps.vector("probe", i));
-        Some(Probe {
-            maps,
-            middle: maps.vector("probe", 0),
-            extent: Extent { near, far, radius, low, high },
-            distances: DistanceCube::new(*maps.whole("face").first()?, maps.floats("distances"), maps.floats("bounds")),
-        })
+        Probe::of(self.prepared.parts().get(index)?)
     }
 
     /// All of them.

@@ -24,6 +24,8 @@ pub struct Site {
     pub source: ProbeSource,
     /// Paths for a texel.
     pub paths: u32,
+    /// Layers of surfaces: 2 with what lies behind what is seen.
+    pub layers: u32,
     /// Indices of the instances that it serves, in order; never empty.
     pub served: Vec<u32>,
 }
@@ -35,6 +37,8 @@ pub struct Defaults {
     pub face: u32,
     /// Paths for a texel.
     pub paths: u32,
+    /// Layers of surfaces, 1 or 2.
+    pub layers: u32,
 }
 
 /// Of all probes of a scene.
@@ -54,8 +58,8 @@ impl Sites {
     }
 }
 
-/// Most texels along an edge, and paths for a texel, of a probe that is made in a part of a second.
-const COARSE: Defaults = Defaults { face: 32, paths: 4 };
+/// Most texels along an edge, paths for a texel, and layers, of a probe that is made in a part of a second.
+const COARSE: Defaults = Defaults { face: 32, paths: 4, layers: 1 };
 
 impl Sites {
     /// The same places, recorded in a part of a second.
@@ -64,6 +68,7 @@ impl Sites {
         for site in &mut self.list {
             site.face = site.face.min(COARSE.face);
             site.paths = site.paths.min(COARSE.paths);
+            site.layers = site.layers.min(COARSE.layers);
             site.source = ProbeSource::Raster;
         }
         self
@@ -87,6 +92,7 @@ impl Site {
             face: probe.resolution.unwrap_or(defaults.face).max(2),
             source: probe.source,
             paths: probe.paths.unwrap_or(defaults.paths).max(1),
+            layers: defaults.layers,
             served: served.into_iter().map(|i| i as u32).collect(),
         })
     }

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
+use super::behind::distances as distances_behind;
 use super::*;
 use crate::job::Handle;
 use crate::lighting::{Method, impostor, prepared::key};
@@ -10,7 +11,7 @@ use crate::param::Settings;
 use crate::reference::{Options, World};
 use crate::scene::{self, ProbeSource, Scene, gallery};
 
-const DEFAULTS: Defaults = Defaults { face: 16, paths: 2 };
+const DEFAULTS: Defaults = Defaults { face: 16, paths: 2, layers: 1 };
 
 fn place(x: f32, half: f32) -> Place {
     Place { middle: Vec3::new(x, 0.0, 0.0), half: Vec3::splat(half) }
@@ -172,4 +173,52 @@ fn a_probe_where_it_fails_is_told() {
         s.instances[1].world_from_local.translation += glam::Vec3A::new(0.0, 0.0, 500.0);
     });
     assert!(sky.contains("nothing but the sky"), "{sky}");
+}
+
+#[test]
+fn behind_a_body_is_the_wall_and_behind_the_wall_nothing() {
+    let room = gallery::open("room").unwrap();
+    let ball = room.subject_bounds();
+    let world = World::new(&Arc::new(room), Options::default());
+    let origin = Vec3::new(-0.9, ball.center().y, ball.center().z);
+    let found = behind(&world, origin, Vec3::X).unwrap();
+    // The back of the ball is none of it.
+    assert!((found.to - 1.9).abs() < 1e-3, "{found:?}");
+    assert!(found.from >= ball.max.x - origin.x - 1e-3 && found.from < found.to, "{found:?}");
+    assert_eq!(behind(&world, origin, -Vec3::X), None);
+    let face = 8;
+    let kept = distances_behind(&world, origin, face);
+    let cube = DistanceCube::new(face, &kept, &[]);
+    assert!((cube.distance(Vec3::X) - 1.9).abs() < 1e-3, "{}", cube.distance(Vec3::X));
+    assert_eq!(cube.distance(Vec3::NEG_X), 0.0);
+}
+
+#[test]
+fn a_second_layer_is_kept_with_the_first() {
+    let room = gallery::open("crate").unwrap();
+    let world = World::new(&Arc::new(room), Options::default());
+    let of = |layers: u32| {
+        prepare(&world, &Sites::new(world.scene(), Defaults { layers, ..DEFAULTS }), &Handle::default()).unwrap()
+    };
+    let (one, two) = (of(1), of(2));
+    let [front, both] = [&one, &two].map(|prepared| Probes::of(prepared).get(0).unwrap());
+    assert!(front.behind().is_none());
+    let second = both.behind().unwrap();
+    assert_eq!(front.distances.distance(Vec3::X), both.distances.distance(Vec3::X));
+    assert_eq!(front.maps.floats("distances"), both.maps.floats("distances"));
+    // What is behind is farther away, and there is some of it.
+    let mut count = 0;
+    for i in 0..6 * 16 * 16 {
+        let direction = DistanceCube::direction(16, i / 256, i % 16, i / 16 % 16);
+        let (before, behind) = (both.distances.distance(direction), second.distances.distance(direction));
+        assert!(behind == 0.0 || behind > before, "{direction} {before} {behind}");
+        count += usize::from(behind > 0.0);
+    }
+    assert!(count > 50 && count < 6 * 16 * 16 / 2, "{count}");
+    assert_eq!(Sites::new(world.scene(), Defaults { layers: 2, ..DEFAULTS }).coarse().list[0].layers, 1);
+    let folder = std::env::temp_dir().join(format!("burnish-probe-layers-{}", std::process::id()));
+    let store = crate::lighting::Store::within(&folder);
+    store.keep("k", &two).unwrap();
+    assert_eq!(store.read("k"), Some(two.clone()));
+    std::fs::remove_dir_all(folder).unwrap();
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use super::behind;
 use super::bounds::bounds;
 use super::distances::DistanceCube;
 use super::seen::surroundings;
@@ -78,23 +79,56 @@ fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodE
             panorama(&around.updated(around.scene(), options), middle, (face, site.paths.min(RASTER_PATHS)), job)?
         }
     };
+    let first = layer(&map, Layer { middle, half, face, inverse, bounds, extent }, job)?
+        .with("served", site.served.clone())
+        .with("shares", shares.to_vec());
+    if site.layers < 2 {
+        return Ok(first);
+    }
+    Ok(first.with_parts(vec![second(around, site, &map, job)?]))
+}
+
+/// What is known of a layer of surfaces but for their light.
+struct Layer {
+    middle: Vec3,
+    half: Vec3,
+    face: u32,
+    inverse: Vec<f32>,
+    bounds: Vec<f32>,
+    extent: Extent,
+}
+
+/// A layer with its light filtered.
+fn layer(map: &Environment, layer: Layer, job: &Handle) -> Result<Prepared, MethodError> {
+    let Layer { middle, half, face, inverse, bounds, extent } = layer;
     let Extent { near, far, radius, low, high } = extent;
     let numbers = [middle, Vec3::new(near, far, radius), low, high, half];
-    Ok(classical::prepare_map(&map, job)?
-        .with("served", site.served.clone())
+    Ok(classical::prepare_map(map, job)?
         .with("distances", inverse)
         .with("bounds", bounds)
         .with("probe", numbers.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>())
-        .with("face", vec![face])
-        .with("shares", shares.to_vec()))
+        .with("face", vec![face]))
+}
+
+/// The layer behind the first one; `front` is the light of that, which takes its place where there is nothing behind.
+fn second(around: &World, site: &Site, front: &Environment, job: &Handle) -> Result<Prepared, MethodError> {
+    let Site { middle, half, face, paths, .. } = *site;
+    let inverse = behind::distances(around, middle, face);
+    let (extent, bounds) = (extent(&inverse, face), bounds(face, &inverse));
+    let map = map(front, paths, job, |place, direction, path| {
+        let from = behind::behind(around, middle, direction)?.from;
+        Some(around.along(middle + from * direction, direction, place, path).radiance)
+    })?;
+    layer(&map, Layer { middle, half, face, inverse, bounds, extent }, job)
 }
 
 /// What is kept of the distances, and the shares of the texels that are sky and that see a surface from behind.
 fn distances(around: &World, middle: Vec3, face: u32) -> (Vec<f32>, [f32; 2]) {
     let texel = |i: u32| {
         let (side, y, x) = (i / (face * face), i / face % face, i % face);
-        let met = around.met_from_behind(middle, DistanceCube::direction(face, side, x, y));
-        (DistanceCube::kept(face, x, y, met.map(|(distance, _)| distance)), met.is_some_and(|(_, behind)| behind))
+        let met = around.sighted(middle, DistanceCube::direction(face, side, x, y));
+        let behind = met.is_some_and(|met| met.from_behind && !met.two_sided);
+        (DistanceCube::kept(face, x, y, met.map(|met| met.distance)), behind)
     };
     let (inverse, behind): (Vec<f32>, Vec<bool>) = (0..6 * face * face).into_par_iter().map(texel).unzip();
     let share = |count: usize| count as f32 / inverse.len() as f32;
@@ -126,8 +160,20 @@ fn extent(inverse: &[f32], face: u32) -> Extent {
 /// The light of the surroundings as an equirectangular map, four times as wide as a face of the cube.
 fn panorama(around: &World, middle: Vec3, (face, paths): (u32, u32), job: &Handle) -> Result<Environment, MethodError> {
     let (width, height) = (4 * face, 2 * face);
-    let grid = Environment::new("probe", width, height, Vec::new());
-    let mut texels = vec![Vec3::ZERO; (width * height) as usize];
+    let black = Environment::new("probe", width, height, vec![Vec3::ZERO; (width * height) as usize]);
+    map(&black, paths, job, |place, direction, path| Some(around.along(middle, direction, place, path).radiance))
+}
+
+/// A map of what `light` sends from directions, means of so many paths a texel; where it is `None` that of `otherwise`, whose
+/// texels it has.
+fn map(
+    otherwise: &Environment,
+    paths: u32,
+    job: &Handle,
+    light: impl Fn(UVec2, Vec3, u32) -> Option<Vec3> + Sync,
+) -> Result<Environment, MethodError> {
+    let (width, height) = (otherwise.width, otherwise.height);
+    let mut texels = otherwise.texels.to_vec();
     let row = (ROW_PATHS / paths.max(1)).clamp(1, width) as usize;
     let done = std::sync::atomic::AtomicUsize::new(0);
     texels.par_chunks_mut(row).enumerate().try_for_each(|(chunk, part)| {
@@ -137,9 +183,10 @@ fn panorama(around: &World, middle: Vec3, (face, paths): (u32, u32), job: &Handl
         for (i, texel) in part.iter_mut().enumerate() {
             let place = (chunk * row + i) as u32;
             let (x, y) = (place % width, place / width);
+            let other = *texel;
             let light = (0..paths).map(|path| {
-                let direction = grid.texel_direction(x, y, hammersley(path, paths) + Vec2::splat(0.5 / paths as f32));
-                around.along(middle, direction, UVec2::new(x, y), path).radiance
+                let place = hammersley(path, paths) + Vec2::splat(0.5 / paths as f32);
+                light(UVec2::new(x, y), otherwise.texel_direction(x, y, place), path).unwrap_or(other)
             });
             // What is no number is left out, as a film does.
             *texel = light.filter(|light| light.is_finite()).sum::<Vec3>() / paths.max(1) as f32;
@@ -148,5 +195,5 @@ fn panorama(around: &World, middle: Vec3, (face, paths): (u32, u32), job: &Handl
         job.set_progress(0.8 * done as f32 / (width * height) as f32);
         Ok(())
     })?;
-    Ok(Environment { texels: texels.into(), ..grid })
+    Ok(Environment { texels: texels.into(), ..otherwise.clone() })
 }

@@ -27,6 +27,13 @@ impl Sums {
         &self.textures[self.current]
     }
 
+    /// Gives the sum away. What takes its place is cleared before it is added to.
+    pub fn take(&mut self, gpu: &Gpu) -> wgpu::Texture {
+        let size = self.texture().size();
+        let fresh = target(gpu, "sum", UVec2::new(size.width, size.height), FORMAT);
+        std::mem::replace(&mut self.textures[self.current], fresh)
+    }
+
     /// Starts from zero.
     pub fn clear(&mut self, encoder: &mut wgpu::CommandEncoder) {
         let view = self.texture().create_view(&Default::default());

@@ -2,6 +2,7 @@
 
 @group(0) @binding(0) var<uniform> display: DisplayData;
 @group(0) @binding(1) var picture: texture_2d<f32>;
+@group(0) @binding(2) var picture_before: texture_2d<f32>;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -10,6 +11,9 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let linear = display.factor * textureLoad(picture, vec2u(position.xy), 0).rgb;
+    var linear = display.factor * textureLoad(picture, vec2u(position.xy), 0).rgb;
+    if display.before > 0.0 {
+        linear += display.before * textureLoad(picture_before, vec2u(position.xy), 0).rgb;
+    }
     return vec4f(view_display(display.mode, display.tone, linear), 1.0);
 }

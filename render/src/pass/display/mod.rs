@@ -22,6 +22,17 @@ pub struct Display {
     pub mode: DisplayMode,
 }
 
+/// What is shown.
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    /// A sum of frames.
+    pub sum: &'a wgpu::TextureView,
+    /// How many they are.
+    pub frames: u32,
+    /// The sum of another picture of the same size with its frames, and its weight in what is shown, 0 to 1.
+    pub before: Option<(&'a wgpu::TextureView, u32, f32)>,
+}
+
 /// The pipeline.
 pub struct DisplayPass {
     layout: wgpu::BindGroupLayout,
@@ -38,6 +49,7 @@ impl DisplayPass {
             entries: &[
                 buffer_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::BufferBindingType::Uniform),
                 texture_entry(1, float, wgpu::TextureViewDimension::D2),
+                texture_entry(2, float, wgpu::TextureViewDimension::D2),
             ],
         });
         let module = shader::DISPLAY.module(device);
@@ -45,17 +57,20 @@ impl DisplayPass {
         DisplayPass { layout, pipeline }
     }
 
-    /// Shows the mean of `frames` frames that `sum` adds up.
+    /// Shows the mean of frames.
     pub fn encode(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        (sum, frames): (&wgpu::TextureView, u32),
+        Shown { sum, frames, before }: Shown<'_>,
         output: &wgpu::TextureView,
         Display { tone, exposure_ev, mode }: Display,
     ) {
-        let factor = exposure_factor(exposure_ev) / frames.max(1) as f32;
-        let data = DisplayData { factor, tone: tone.number(), mode: mode.number(), pad0: 0 };
+        let exposure = exposure_factor(exposure_ev);
+        let (sum_before, frames_before, weight) = before.unwrap_or((sum, 1, 0.0));
+        let factor = exposure * (1.0 - weight) / frames.max(1) as f32;
+        let before = exposure * weight / frames_before.max(1) as f32;
+        let data = DisplayData { factor, tone: tone.number(), mode: mode.number(), before };
         let uniform = gpu.buffer("display", bytemuck::bytes_of(&data), wgpu::BufferUsages::UNIFORM);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("display"),
@@ -63,6 +78,7 @@ impl DisplayPass {
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(sum) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(sum_before) },
             ],
         });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

@@ -11,7 +11,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     let eye = to_viewer(at.point);
     let direction = reflect(-eye, at.texel.normal);
-    let found = impostor_solve(extent(), from_middle, direction, effort());
+    let found = follow(direction).found;
     let start = at.point + ERROR_LIFT * length(view.viewer.xyz - at.point * view.viewer.w) * at.texel.normal;
     let hit = trace_closest(RayData(start, 3.0e38, direction, 0u));
     // The sky is seen in the same direction from everywhere.

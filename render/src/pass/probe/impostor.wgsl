@@ -12,7 +12,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let t = at.texel;
     let eye = to_viewer(at.point);
     if given.show != IMPOSTOR_SHOW_LIGHT {
-        let found = impostor_solve(extent(), from_middle, reflect(-eye, t.normal), effort());
+        let found = follow(reflect(-eye, t.normal)).found;
         return vec4f(at.weight * impostor_shown(found, given.show), 0.0);
     }
     let m = materials[instances[t.id - 1u].material];

@@ -12,6 +12,11 @@
 @group(2) @binding(9) var<uniform> probe_places: array<vec4f, 64>;
 // Least and greatest of the inverse depths over cells of 2, 4, 8 ... quads.
 @group(2) @binding(12) var inverse_bounds: texture_2d_array<f32>;
+// The second layer of surfaces; the faces of its distances come after those of the first.
+@group(2) @binding(13) var radiance_behind: texture_cube<f32>;
+@group(2) @binding(14) var prefiltered_behind: texture_cube<f32>;
+@group(2) @binding(15) var dimmed_behind: texture_cube<f32>;
+@group(2) @binding(16) var<uniform> probe_behind: ProbeData;
 @group(3) @binding(0) var<uniform> given: EffortData;
 
 fn ggx_albedo_entry(index: u32) -> f32 {
@@ -27,8 +32,11 @@ fn probe_place(index: u32) -> ProbePlace {
     return ProbePlace(probe_places[2u * index].xyz, probe_places[2u * index + 1u].xyz);
 }
 
+// The layer of surfaces whose distances are looked up.
+var<private> layer: u32;
+
 fn probe_inverse_depth(side: u32, x: u32, y: u32) -> f32 {
-    return textureLoad(inverse_depths, vec2u(x, y), side, 0).x;
+    return textureLoad(inverse_depths, vec2u(x, y), 6u * layer + side, 0).x;
 }
 
 fn impostor_distance(direction: vec3f) -> f32 {
@@ -47,10 +55,15 @@ fn pyramid_corners(side: u32, x: u32, y: u32) -> vec4f {
 }
 
 fn pyramid_bounds(level: u32, side: u32, x: u32, y: u32) -> vec2f {
-    return textureLoad(inverse_bounds, vec2u(x, y), side, level - 1u).xy;
+    return textureLoad(inverse_bounds, vec2u(x, y), 6u * layer + side, level - 1u).xy;
 }
 
 fn extent() -> ImpostorExtent {
+    if layer == 1u {
+        return ImpostorExtent(
+            probe_behind.near, probe_behind.far, probe_behind.radius, probe_behind.low, probe_behind.high,
+        );
+    }
     return ImpostorExtent(probe.near, probe.far, probe.radius, probe.low, probe.high);
 }
 
@@ -61,28 +74,69 @@ fn effort() -> ImpostorEffort {
 // The point that is lit, from the middle of the probe.
 var<private> from_middle: vec3f;
 
-// Where to look, mirrored as cubes are, and how much nearer than to the middle the place is.
-fn look(direction: vec3f) -> vec4f {
-    let found = impostor_solve(extent(), from_middle, direction, effort());
+struct Followed {
+    found: ImpostorFound,
+    // Whose light is to be looked up.
+    layer: u32,
+}
+
+// Through what the probe sees; where that finds nothing, through what lies behind.
+fn follow(direction: vec3f) -> Followed {
+    var first: ImpostorFound;
+    var lookups = 0u;
+    for (layer = 0u; layer < probe.layers; layer++) {
+        var found = impostor_solve(extent(), from_middle, direction, effort());
+        lookups += found.lookups;
+        if found.is_hit {
+            found.lookups = lookups;
+            let hit = layer;
+            layer = 0u;
+            return Followed(found, hit);
+        }
+        if layer == 0u {
+            first = found;
+        }
+    }
+    layer = 0u;
+    first.lookups = lookups;
+    return Followed(first, 0u);
+}
+
+// Where to look, mirrored as cubes are, how much nearer than to the middle the place is, and in which layer.
+struct Look {
+    at: vec3f,
+    nearer: f32,
+    layer: u32,
+}
+
+fn look(direction: vec3f) -> Look {
+    let followed = follow(direction);
+    let found = followed.found;
     let seen = impostor_direction(found, from_middle, direction);
     let distance = length(from_middle + found.t * direction);
     var nearer = 1.0;
     if found.is_hit && distance > 0.0 {
         nearer = found.t / distance;
     }
-    return vec4f(seen.xy, -seen.z, nearer);
+    return Look(vec3f(seen.xy, -seen.z), nearer, followed.layer);
 }
 
 fn classical_radiance(direction: vec3f, level: f32) -> vec3f {
-    let at = look(direction);
-    let shifted = impostor_level(level, at.w, 1.0, probe.radiance_mips - 1.0);
-    return probe.scale * textureSampleLevel(radiance_cube, cube_sampler, at.xyz, shifted).rgb;
+    let look = look(direction);
+    let shifted = impostor_level(level, look.nearer, 1.0, probe.radiance_mips - 1.0);
+    if look.layer == 1u {
+        return probe_behind.scale * textureSampleLevel(radiance_behind, cube_sampler, look.at, shifted).rgb;
+    }
+    return probe.scale * textureSampleLevel(radiance_cube, cube_sampler, look.at, shifted).rgb;
 }
 
 fn classical_dimmed(direction: vec3f, level: f32) -> vec3f {
-    let at = look(direction);
-    let shifted = impostor_level(level, at.w, 1.0, probe.radiance_mips - 1.0);
-    return probe.scale * textureSampleLevel(dimmed_cube, cube_sampler, at.xyz, shifted).rgb;
+    let look = look(direction);
+    let shifted = impostor_level(level, look.nearer, 1.0, probe.radiance_mips - 1.0);
+    if look.layer == 1u {
+        return probe_behind.scale * textureSampleLevel(dimmed_behind, cube_sampler, look.at, shifted).rgb;
+    }
+    return probe.scale * textureSampleLevel(dimmed_cube, cube_sampler, look.at, shifted).rgb;
 }
 
 // As bright from every side, and larger from nearer.
@@ -101,10 +155,13 @@ fn classical_source(index: u32) -> mat2x3f {
 
 // The lobe covers so much less of a near surface: a narrower one would from the middle.
 fn classical_prefiltered(direction: vec3f, level: f32) -> vec3f {
-    let at = look(direction);
+    let look = look(direction);
     let roughness = classical_roughness(level, probe.prefiltered_mips);
-    let seen = classical_level(roughness * sqrt(at.w), probe.prefiltered_mips);
-    return probe.scale * textureSampleLevel(prefiltered_cube, cube_sampler, at.xyz, seen).rgb;
+    let seen = classical_level(roughness * sqrt(look.nearer), probe.prefiltered_mips);
+    if look.layer == 1u {
+        return probe_behind.scale * textureSampleLevel(prefiltered_behind, cube_sampler, look.at, seen).rgb;
+    }
+    return probe.scale * textureSampleLevel(prefiltered_cube, cube_sampler, look.at, seen).rgb;
 }
 
 fn classical_irradiance(direction: vec3f) -> vec3f {

@@ -136,6 +136,10 @@ impl ProbePass {
     ) -> wgpu::BindGroup {
         let maps = &probe.maps;
         let cubes = [&maps.radiance, &maps.prefiltered, &maps.irradiance, &maps.dimmed].map(cube_view);
+        // Without a second layer nothing looks there.
+        let (behind, behind_data) =
+            probe.behind.as_ref().map_or((maps, &probe.data), |behind| (&behind.maps, &behind.data));
+        let behind_cubes = [&behind.radiance, &behind.prefiltered, &behind.dimmed].map(cube_view);
         let sampler = cube_sampler(&gpu.device);
         let area_tables = self.tables.get_or_init(|| {
             let tables = bytemuck::cast_slice(area_cube::tables::flat());
@@ -155,6 +159,10 @@ impl ProbePass {
             probe.coarse.as_entire_binding(),
             area_tables.as_entire_binding(),
             wgpu::BindingResource::TextureView(&probe.inverse_bounds),
+            wgpu::BindingResource::TextureView(&behind_cubes[0]),
+            wgpu::BindingResource::TextureView(&behind_cubes[1]),
+            wgpu::BindingResource::TextureView(&behind_cubes[2]),
+            behind_data.as_entire_binding(),
         ];
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -248,6 +256,10 @@ fn probe_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             buffer_entry(10, fragment, storage),
             buffer_entry(11, fragment, storage),
             texture_entry(12, float(false), wgpu::TextureViewDimension::D2Array),
+            texture_entry(13, float(true), cube),
+            texture_entry(14, float(true), cube),
+            texture_entry(15, float(true), cube),
+            buffer_entry(16, fragment, wgpu::BufferBindingType::Uniform),
         ],
     })
 }

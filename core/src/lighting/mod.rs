@@ -10,6 +10,7 @@ pub mod layers;
 pub mod method;
 pub mod prepared;
 pub mod probe;
+pub mod radiance_map;
 
 use std::sync::{PoisonError, RwLock};
 

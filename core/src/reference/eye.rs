@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2, Vec3};
 
 use super::backdrop;
-use super::bsdf::Bsdf;
+use super::bsdf::{Bsdf, BsdfSample};
 use super::lamps::{self, Receiver};
 use super::lights::{Kind, Lights, Rates};
 use super::path::{balance, casts_shadows, received, shadow_ray};
@@ -35,6 +35,17 @@ pub struct SurfacePoint<'a> {
     hit: &'a Hit,
     to_viewer: Vec3,
     salt: u32,
+}
+
+/// A direction drawn from a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    /// World, unit.
+    pub direction: Vec3,
+    /// BSDF times cosine over the density: what radiance from there is multiplied by.
+    pub weight: Vec3,
+    /// Per steradian; infinite for a mirror.
+    pub pdf: f32,
 }
 
 impl<'a> Eye<'a> {
@@ -146,6 +157,26 @@ impl SurfacePoint<'_> {
     /// Response to light from a direction (world, unit): BSDF times cosine.
     pub fn response(&self, direction: Vec3) -> Vec3 {
         self.bsdf().eval(direction).0
+    }
+
+    /// The same, and the density with which [`SurfacePoint::drawn`] draws the direction, per steradian; a mirror has neither.
+    pub fn response_and_density(&self, direction: Vec3) -> (Vec3, f32) {
+        self.bsdf().eval(direction)
+    }
+
+    /// A direction drawn by how the surface reflects; `u` in `[0, 1)^3`. `None` where it reflects nothing there.
+    pub fn drawn(&self, u: Vec3) -> Option<Drawn> {
+        let BsdfSample { wi, weight, pdf } = self.bsdf().sample(u)?;
+        Some(Drawn { direction: wi, weight, pdf })
+    }
+
+    /// What a ray from the point meets in a direction (world, unit), as light does. `index` sets its random numbers apart.
+    pub fn toward(&self, direction: Vec3, index: u32) -> Eye<'_> {
+        let origin = offset(self.point.position, self.point.rounding, self.point.geometric, direction);
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let sampler = PathSampler::new(index, UVec2::new(direction.x.to_bits(), direction.y.to_bits()), 0);
+        let hit = self.world.closest(&ray, Sight::Light, sampler.salt());
+        Eye { world: self.world, ray, hit, sampler }
     }
 
     /// Nothing lies on the way from the point in a direction (world, unit), over `distance` metres.

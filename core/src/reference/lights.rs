@@ -54,6 +54,17 @@ pub(super) enum Source {
     Lamp(usize),
 }
 
+impl Source {
+    /// Number of its kind: the environment, lamps, what glows.
+    pub(super) fn kind(self) -> usize {
+        match self {
+            Source::Environment => 0,
+            Source::Lamp(_) => 1,
+            Source::Emission => 2,
+        }
+    }
+}
+
 /// A lamp with a size that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met<'a> {
@@ -164,6 +175,17 @@ impl Lights {
     /// Radiance of the sky.
     pub(super) fn sky(&self, direction: Vec3) -> Vec3 {
         self.sky.as_ref().map_or(Vec3::ZERO, |sky| sky.radiance(direction))
+    }
+
+    /// The sky is drawn by where it is bright.
+    pub(super) fn draws_sky(&self) -> bool {
+        self.sky.as_ref().is_some_and(|sky| sky.is_sampled())
+    }
+
+    /// A direction of the sky with its radiance over the density.
+    pub(super) fn sky_drawn(&self, u: Vec2) -> Option<(Vec3, Vec3)> {
+        let sample = self.sky.as_ref()?.sample(u)?;
+        Some((sample.direction, sample.radiance / sample.pdf))
     }
 
     /// The rates at a point: one sample of each kind that there is, or one by a guess at their irradiance.

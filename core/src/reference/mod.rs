@@ -32,10 +32,11 @@ use glam::{UVec2, Vec3};
 use crate::lighting::{Cover, Coverage, Method, MethodId, MethodInfo, Reads};
 use crate::scene::Camera;
 
-pub use eye::{Eye, SurfacePoint};
+pub use eye::{Drawn, Eye, SurfacePoint};
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};
+pub use path::Apart;
 pub use settings::{COMPARED_PARAMS, Contribution, Options, PARAMS, is_spectral};
 pub use world::{Sighted, World};
 

@@ -28,8 +28,27 @@ struct Path<'a> {
     /// Surfaces met so far.
     surfaces: u32,
     radiance: Vec3,
+    /// The same by [`Source::kind`].
+    by_source: [Vec3; 3],
+    /// Which surfaces the first ray sees.
+    sight: Sight,
+    /// The first ray met no surface.
+    escaped: bool,
     clamped: Vec3,
     rays: u32,
+}
+
+/// A path with its light apart by where that comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// Scene-linear radiance of the environment, of lamps, of what glows.
+    pub by_source: [Vec3; 3],
+    /// It met no surface: the environment's is seen straight.
+    pub escaped: bool,
+    /// The first surface was met from behind, where it has no back: nothing comes from there.
+    pub from_behind: bool,
+    /// Rays that were cast.
+    pub rays: u32,
 }
 
 /// Where and how the last direction was drawn: what the light found at its end is weighed by.
@@ -57,34 +76,56 @@ struct Lit<'a> {
 
 /// Follows a path along a ray from the eye.
 pub(super) fn trace(world: &World, ray: Ray, sampler: PathSampler, waves: Waves) -> PathSample {
-    let mut path = Path {
-        world,
-        sampler,
-        waves,
-        throughput: Vec3::ONE,
-        surfaces: 0,
-        radiance: Vec3::ZERO,
-        clamped: Vec3::ZERO,
-        rays: 0,
-    };
+    let mut path = Path::new(world, sampler, waves);
     let first = path.follow(ray);
     PathSample { radiance: waves.to_rgb(path.radiance), clamped: waves.to_rgb(path.clamped), first, rays: path.rays }
 }
 
-impl Path<'_> {
+/// The same with the light apart, along a ray from a surface, which meets the backs of others.
+pub(super) fn trace_apart(world: &World, ray: Ray, sampler: PathSampler, waves: Waves) -> Apart {
+    let mut path = Path { sight: Sight::Light, ..Path::new(world, sampler, waves) };
+    let first = path.follow(ray);
+    Apart {
+        by_source: path.by_source.map(|light| waves.to_rgb(light)),
+        escaped: path.escaped,
+        from_behind: first.is_none() && !path.escaped,
+        rays: path.rays,
+    }
+}
+
+impl<'a> Path<'a> {
+    fn new(world: &'a World, sampler: PathSampler, waves: Waves) -> Path<'a> {
+        Path {
+            world,
+            sampler,
+            waves,
+            throughput: Vec3::ONE,
+            surfaces: 0,
+            radiance: Vec3::ZERO,
+            by_source: [Vec3::ZERO; 3],
+            sight: Sight::Eye,
+            escaped: false,
+            clamped: Vec3::ZERO,
+            rays: 0,
+        }
+    }
+
     fn follow(&mut self, mut ray: Ray) -> Option<FirstHit> {
         let world = self.world;
         let mut first = None;
         let mut drawn = Drawn::FROM_EYE;
         loop {
-            let sight = if self.surfaces == 0 { Sight::Eye } else { Sight::Light };
+            let sight = if self.surfaces == 0 { self.sight } else { Sight::Light };
             let salt = self.sampler.salt().wrapping_add(self.surfaces);
             self.rays += 1;
             let hit = world.closest(&ray, sight, salt);
             self.meet_lamps(&drawn, &ray, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
             let Some(hit) = hit else {
                 match self.surfaces {
-                    0 => self.background(&ray),
+                    0 => {
+                        self.escaped = true;
+                        self.background(&ray);
+                    }
                     _ => self.escape(&drawn, ray.direction),
                 }
                 return first;
@@ -216,13 +257,13 @@ impl Path<'_> {
         let light = self.throughput * light;
         let most = self.world.options().clamp;
         let largest = light.max_element();
+        let mut kept = light;
         if self.surfaces > 1 && largest > most {
-            let kept = light * (most / largest);
+            kept = light * (most / largest);
             self.clamped += light - kept;
-            self.radiance += kept;
-        } else {
-            self.radiance += light;
         }
+        self.radiance += kept;
+        self.by_source[source.kind()] += kept;
     }
 
     /// Russian roulette by the throughput.

@@ -185,6 +185,25 @@ impl World {
         self.follow(origin, direction, sampler, z)
     }
 
+    /// The same with the light apart by where it comes from.
+    pub fn along_apart(&self, origin: Vec3, direction: Vec3, pixel: UVec2, index: u32) -> path::Apart {
+        let mut sampler = PathSampler::new(0, pixel, index);
+        let [_, _, z, _] = sampler.next4();
+        let waves = if self.metals.is_some() { Waves::draw(z) } else { Waves::Rgb };
+        path::trace_apart(self, Ray { origin, direction, t_max: f32::INFINITY }, sampler, waves)
+    }
+
+    /// The environment is drawn from where it is bright: [`World::sky_drawn`] finds directions.
+    pub fn draws_sky(&self) -> bool {
+        self.lights.draws_sky()
+    }
+
+    /// A direction of the environment (world, unit), and its radiance over the density per steradian; `u` in `[0, 1)^2`. `None` where there is none
+    /// to be drawn, or a number falls between two.
+    pub fn sky_drawn(&self, u: Vec2) -> Option<(Vec3, Vec3)> {
+        self.lights.sky_drawn(u)
+    }
+
     /// Follows a path; `u` draws its wavelengths, where there are some.
     fn follow(&self, origin: Vec3, direction: Vec3, sampler: PathSampler, u: f32) -> PathSample {
         let waves = if self.metals.is_some() { Waves::draw(u) } else { Waves::Rgb };

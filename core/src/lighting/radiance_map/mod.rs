@@ -1,0 +1,16 @@
+//! Baked incident-radiance maps: light as it arrives at places on surfaces, from a few directions that all places share.
+//!
+//! Neither BRDF nor cosine is baked in: materials are edited at full speed under light that went everywhere. What an edited surface sends to others is
+//! that of the bake. `README.md` has the formulas and figures.
+
+mod bake;
+mod directions;
+mod method;
+mod near;
+mod points;
+
+pub use bake::{Asked, GROUPS, bake};
+pub use directions::{Directions, Drawn, FEWEST, Spread};
+pub use method::{ID, PARAMS, RadianceMap};
+pub use near::{AGREEMENT, Grid, Near, SET, weights};
+pub use points::{Place, Surfaces};

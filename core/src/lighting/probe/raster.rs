@@ -11,7 +11,7 @@ use crate::job::Handle;
 use crate::lighting::MethodError;
 use crate::math::cube::{self, mirrored};
 use crate::reference::{Options, World};
-use crate::scene::Environment;
+use crate::scene::{Environment, ProbeSource};
 
 /// Bounces of paths that bring direct light only.
 const DIRECT: u32 = 1;
@@ -31,7 +31,7 @@ pub trait Raster: fmt::Debug + Send + Sync {
 
 /// What is seen from a probe in direct light, as an equirectangular map four times as wide as a face.
 pub(super) fn light(around: &World, site: &Site, job: &Handle) -> Result<Environment, MethodError> {
-    let Site { middle, face, paths, .. } = *site;
+    let Site { middle, face, .. } = *site;
     let edge = drawn_edge(face);
     match around.raster().map(|raster| raster.faces(around, middle, edge, job)) {
         Some(Ok(faces)) if faces.len() as u32 == 6 * edge * edge => return unfolded(face, edge, &faces, job),
@@ -39,8 +39,19 @@ pub(super) fn light(around: &World, site: &Site, job: &Handle) -> Result<Environ
         // A device that fails says so where it draws the picture; what is drawn here can be traced instead.
         Some(Ok(_) | Err(MethodError::Unfit(_))) | None => {}
     }
-    let options = Options { bounces: DIRECT, ..*around.options() };
-    panorama(&around.updated(around.scene(), options), middle, (face, paths.min(PATHS)), job)
+    let (around, paths) = traced(around, site);
+    panorama(&around, middle, (face, paths), job)
+}
+
+/// The world for paths of a site and how many a texel gets: few of direct light, where the light is to be drawn but nobody does.
+pub(super) fn traced(around: &World, site: &Site) -> (World, u32) {
+    match site.source {
+        ProbeSource::Traced => (around.clone(), site.paths),
+        ProbeSource::Raster => {
+            let options = Options { bounces: DIRECT, ..*around.options() };
+            (around.updated(around.scene(), options), site.paths.min(PATHS))
+        }
+    }
 }
 
 /// Texels along the edge of a drawn face for a probe with `face` of them.

@@ -112,6 +112,20 @@ fn a_probe_is_drawn_where_someone_draws_and_traced_where_nobody_can() {
 }
 
 #[test]
+fn what_lies_behind_a_drawn_probe_has_direct_light_too() {
+    let room = Arc::new(gallery::open("crate").unwrap());
+    let second = |bounces, source| {
+        let world = World::new(&room, Options { bounces, ..Options::default() });
+        let mut sites = sites(&room, source);
+        sites.list.iter_mut().for_each(|site| site.layers = 2);
+        prepare(&world, &sites, &Handle::default()).unwrap().parts()[0].parts()[0].clone()
+    };
+    let drawn = second(64, ProbeSource::Raster);
+    assert!(drawn == second(1, ProbeSource::Traced));
+    assert!(drawn != second(64, ProbeSource::Traced), "light that bounces is there to be left out");
+}
+
+#[test]
 fn a_traced_probe_is_never_drawn_and_alone_is_kept() {
     let traced = prepared(None, ProbeSource::Traced).unwrap();
     let anyway = prepared(Some(Arc::new(Formula(|_| Vec3::ONE))), ProbeSource::Traced).unwrap();

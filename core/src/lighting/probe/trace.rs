@@ -107,11 +107,13 @@ fn layer(map: &Environment, layer: Layer, job: &Handle) -> Result<Prepared, Meth
 
 /// The layer behind the first one; `front` is the light of that, which takes its place where there is nothing behind.
 fn second(around: &World, site: &Site, front: &Environment, job: &Handle) -> Result<Prepared, MethodError> {
-    let Site { middle, half, face, paths, .. } = *site;
+    let Site { middle, half, face, .. } = *site;
     let inverse = behind::distances(around, middle, face);
+    // No view shows what is hidden.
+    let (around, paths) = raster::traced(around, site);
     let (extent, bounds) = (extent(&inverse, face), bounds(face, &inverse));
     let map = map(front, paths, job, |place, direction, path| {
-        let from = behind::behind(around, middle, direction)?.from;
+        let from = behind::behind(&around, middle, direction)?.from;
         Some(around.along(middle + from * direction, direction, place, path).radiance)
     })?;
     layer(&map, Layer { middle, half, face, inverse, bounds, extent }, job)

@@ -17,7 +17,7 @@ use burnish_core::scene::{Environment, Scene, gallery};
 use burnish_core::surface::ggx::Masking;
 use glam::{UVec2, Vec3};
 
-use crate::{Gpu, Lighting, Passes, RenderError, Renderer, View};
+use crate::{DeviceRaster, Gpu, Lighting, Passes, RenderError, Renderer, View};
 
 /// Pixels of the calibration pass.
 const CALIBRATION_SIZE: UVec2 = UVec2::new(320, 180);
@@ -122,7 +122,8 @@ impl DeviceTimer {
         if id.0 == classical::ID {
             return Ok(Lighting::default());
         }
-        let world = World::new(scene, Options::new(settings));
+        let raster = Arc::new(DeviceRaster::new(&self.passes));
+        let world = World::new(scene, Options::new(settings)).with_raster(Some(raster));
         let prepared = self.method.prepare(&world, settings, self.control.job())?;
         Ok(Lighting::new(id, Some(Arc::new(prepared))))
     }

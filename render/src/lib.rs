@@ -1,7 +1,7 @@
 //! The wgpu renderer of Burnish: one code path with and without a window.
 //!
 //! [`Gpu`] opens an adapter or takes a window's, [`Renderer`] holds a scene on it and draws [`View`]s into linear
-//! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere. Lighting formulas live in `burnish-core` as leaves; here are
+//! pictures, [`Viewport`] keeps one on a screen up to date, [`Plate`] shows one that was computed elsewhere, [`DeviceRaster`] draws what probes see. Lighting formulas live in `burnish-core` as leaves; here are
 //! the passes that join and run them.
 
 use burnish_core::lighting::{area_cube, classical, impostor};
@@ -16,6 +16,7 @@ pub mod pass;
 mod passes;
 mod plate;
 mod probes;
+mod raster;
 pub mod readback;
 pub mod renderer;
 mod resident;
@@ -33,6 +34,7 @@ pub use pass::display::Display;
 pub use passes::Passes;
 pub use plate::Plate;
 pub use probes::Lighting;
+pub use raster::DeviceRaster;
 pub use renderer::{Renderer, View};
 pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};
 

@@ -21,6 +21,8 @@ mod losses;
 mod plate;
 #[path = "images/processor.rs"]
 mod processor;
+#[path = "images/raster.rs"]
+mod raster;
 #[path = "images/viewport.rs"]
 mod viewport;
 
@@ -61,6 +63,7 @@ fn main() {
     trials.extend(fade::trials());
     trials.extend(losses::trials());
     trials.extend(plate::trials());
+    trials.extend(raster::trials());
     trials.extend(processor::trials());
     trials.extend(viewport::trials());
     libtest_mimic::run(&arguments, trials).exit();

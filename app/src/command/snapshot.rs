@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::{self, Document};
@@ -11,7 +12,7 @@ use burnish_core::lighting::Store;
 use burnish_core::measure::view::{DisplayMode, displayed};
 use burnish_core::measure::{PIXELS_PER_DEGREE, flip};
 use burnish_core::picture::Picture;
-use burnish_render::{Gpu, Renderer, View};
+use burnish_render::{Gpu, Passes, Renderer, View};
 use clap::ValueEnum;
 use glam::UVec2;
 
@@ -160,12 +161,13 @@ fn open(scene: &str, err: &mut dyn Write) -> Result<Session, Failure> {
 fn viewport(session: &Session, size: UVec2, err: &mut dyn Write) -> Result<(Picture, ToneMap, f32), Failure> {
     let Document { view, lighting, .. } = &**session.document();
     let gpu = Gpu::new().map_err(Failure::resources)?;
-    let mut renderer = Renderer::new(&gpu, session.scene()).map_err(Failure::resources)?;
+    let passes = Arc::new(Passes::new(&gpu));
+    let mut renderer = Renderer::with_passes(&passes, session.scene()).map_err(Failure::resources)?;
     for name in renderer.unshadowed_lights() {
         writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;
     }
     let store = Folders::of_user().map_or_else(Store::none, |folders| Store::within(&folders.prepared()));
-    let prepared = lighting_now(session.layers(), session.scene(), &store, &Handle::default());
+    let prepared = lighting_now(session.layers(), session.scene(), (&passes, &store), &Handle::default());
     renderer.light_by(&prepared.map_err(Failure::resources)?).map_err(Failure::resources)?;
     let camera = view.camera.camera();
     let of_document = View { size, camera, settings: lighting.settings(), jitter_frames: FRAMES };

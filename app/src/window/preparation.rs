@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use burnish_core::job::{Handle, Job, Outcome};
 use burnish_core::lighting::prepared::{Store, key};
+use burnish_core::lighting::probe::Raster;
 use burnish_core::lighting::{Method, MethodError, MethodId, Prepared, Reads};
 use burnish_core::param::Settings;
 use burnish_core::reference::{Options, World};
@@ -47,6 +48,8 @@ struct Subject {
     method: &'static dyn Method,
     settings: Settings,
     scene: Arc<Scene>,
+    /// Who draws what probes see.
+    raster: Option<Arc<dyn Raster>>,
 }
 
 /// One that is there.
@@ -98,6 +101,7 @@ pub struct Preparation {
     is_whole: bool,
     /// When a draft becomes the whole.
     full_at: Option<Instant>,
+    raster: Option<Arc<dyn Raster>>,
     /// The scene that was prepared last, ready for rays: the next shares with it what stayed.
     world: Arc<Mutex<Option<World>>>,
     fault: Option<String>,
@@ -119,7 +123,7 @@ impl Subject {
         world: &Mutex<Option<World>>,
         job: &Handle,
     ) -> Found {
-        let Subject { method, settings, scene } = self;
+        let Subject { method, settings, scene, raster } = self;
         let key = key(*method, settings, scene);
         if known.as_ref() == Some(&key) {
             return Found::Same;
@@ -142,6 +146,7 @@ impl Subject {
         let mut last = world.lock().unwrap_or_else(PoisonError::into_inner);
         let options = Options::new(settings);
         let world = last.take().map_or_else(|| World::new(scene, options), |old| old.updated(scene, options));
+        let world = world.with_raster(raster.clone());
         *last = Some(world.clone());
         drop(last);
         if wanted == Wanted::Draft {
@@ -169,6 +174,7 @@ impl Default for Preparation {
             outdated: false,
             is_whole: false,
             full_at: None,
+            raster: None,
             world: Arc::default(),
             fault: None,
         }
@@ -187,9 +193,14 @@ impl Preparation {
         Preparation { quick: Duration::MAX, ..self }
     }
 
+    /// Lets someone draw what probes see, from the next preparation on.
+    pub fn draw_probes_by(&mut self, raster: Option<Arc<dyn Raster>>) {
+        self.raster = raster;
+    }
+
     /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
     pub fn follow(&mut self, method: &'static dyn Method, settings: Settings, scene: &Arc<Scene>, ctx: &egui::Context) {
-        let subject = Subject { method, settings, scene: scene.clone() };
+        let subject = Subject { method, settings, scene: scene.clone(), raster: self.raster.clone() };
         if self.subject.as_ref().is_none_or(|old| !old.is_like(&subject)) {
             if self.held.as_ref().is_some_and(|held| held.method != method.info().id) {
                 (self.held, self.state) = (None, None);

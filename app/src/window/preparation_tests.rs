@@ -1,6 +1,7 @@
 use super::*;
-use burnish_core::lighting::{Coverage, MethodInfo};
+use burnish_core::lighting::{Coverage, MethodInfo, impostor};
 use burnish_core::scene::gallery;
+use glam::Vec3;
 
 /// Counts lamps, unless there are none.
 #[derive(Debug)]
@@ -136,4 +137,38 @@ fn what_is_quick_follows_every_edit_and_a_fault_is_told() {
     scene.lights.clear();
     assert_eq!(settle(&mut preparation, &Arc::new(scene)), State::Stale);
     assert_eq!(preparation.fault(), Some("no lamps"));
+}
+
+/// Draws even light.
+#[derive(Debug)]
+struct Even;
+
+impl Raster for Even {
+    fn faces(&self, _: &World, _: Vec3, edge: u32, _: &Handle) -> Result<Vec<Vec3>, MethodError> {
+        Ok(vec![Vec3::splat(3.0); 6 * (edge * edge) as usize])
+    }
+}
+
+#[test]
+fn drafts_are_drawn_by_whom_the_window_names() {
+    let (scene, ctx) = (Arc::new(gallery::open("room").unwrap()), egui::Context::default());
+    let settings = || {
+        let mut settings = Settings::new(impostor::PARAMS);
+        settings.set("resolution", "16").unwrap();
+        settings
+    };
+    let irradiance = |raster: Option<Arc<dyn Raster>>| {
+        let mut preparation = Preparation::default();
+        preparation.draw_probes_by(raster);
+        let start = Instant::now();
+        while preparation.state() != State::Draft {
+            assert!(start.elapsed().as_secs() < 60, "{:?}", preparation.state());
+            preparation.follow(&impostor::Impostor, settings(), &scene, &ctx);
+            std::thread::yield_now();
+        }
+        preparation.held.as_ref().unwrap().prepared.parts()[0].halves("irradiance")[0].to_f32()
+    };
+    let even = 3.0 * std::f32::consts::PI;
+    assert!((irradiance(Some(Arc::new(Even))) / even - 1.0).abs() < 2e-3);
+    assert!((irradiance(None) / even - 1.0).abs() > 0.1);
 }

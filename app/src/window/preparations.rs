@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use burnish_core::job::Handle;
 use burnish_core::lighting::prepared::Asked;
+use burnish_core::lighting::probe::Raster;
 use burnish_core::lighting::{Layer, Layers, MethodError, Prepared, Store, classical};
 use burnish_core::reference::{Options, World};
 use burnish_core::scene::Scene;
-use burnish_render::Lighting;
+use burnish_render::{DeviceRaster, Lighting, Passes};
 use eframe::egui;
 
 use super::preparation::Preparation;
@@ -17,6 +18,7 @@ use super::preparation::Preparation;
 pub struct Preparations {
     store: Store,
     always_anew: bool,
+    raster: Option<Arc<dyn Raster>>,
     each: Vec<(Asked, Preparation)>,
 }
 
@@ -37,13 +39,20 @@ pub fn lighting(layers: &Layers, preparations: &Preparations) -> Lighting {
     Lighting::new(layers.first().method.info().id, first)
 }
 
-/// The same for one picture: waits until it is prepared. `classical` where the processor draws.
-pub fn lighting_now(layers: &Layers, scene: &Arc<Scene>, store: &Store, job: &Handle) -> Result<Lighting, MethodError> {
+/// The same for one picture on the device of some passes: waits until it is prepared. `classical` where the processor draws.
+pub fn lighting_now(
+    layers: &Layers,
+    scene: &Arc<Scene>,
+    (passes, store): (&Arc<Passes>, &Store),
+    job: &Handle,
+) -> Result<Lighting, MethodError> {
     if prepared_on_device(layers) || !drawn_on_device(layers) {
         return Ok(Lighting::default());
     }
     let Layer { method, settings, .. } = layers.first();
-    let prepared = layers.prepare(store, &World::new(scene, Options::new(settings)), job)?;
+    let raster = Arc::new(DeviceRaster::new(passes));
+    let world = World::new(scene, Options::new(settings)).with_raster(Some(raster));
+    let prepared = layers.prepare(store, &world, job)?;
     Ok(Lighting::new(method.info().id, prepared.into_iter().next()))
 }
 
@@ -56,13 +65,18 @@ pub fn drawn_on_device(layers: &Layers) -> bool {
 impl Preparations {
     /// Keeps preparations in a folder.
     pub fn new(store: Store) -> Preparations {
-        Preparations { store, always_anew: false, each: Vec::new() }
+        Preparations { store, always_anew: false, raster: None, each: Vec::new() }
     }
 
     /// The same, but they are made anew after every edit, see [`Preparation::always_anew`].
     #[must_use]
     pub fn always_anew(self) -> Preparations {
         Preparations { always_anew: true, ..self }
+    }
+
+    /// Lets someone draw what probes see, from the next preparation on.
+    pub fn draw_probes_by(&mut self, raster: Option<Arc<dyn Raster>>) {
+        self.raster = raster;
     }
 
     /// Follows the document: call it in every frame. `ctx` is repainted when something comes of it.
@@ -89,6 +103,7 @@ impl Preparations {
             self.each.swap(asked.len(), place);
             let (known, preparation) = &mut self.each[asked.len()];
             known.clone_from(&by);
+            preparation.draw_probes_by(self.raster.clone());
             preparation.follow(layer.method, layer.settings.clone(), scene, ctx);
             asked.push(by);
         }

@@ -63,6 +63,8 @@ impl Reads {
 pub struct Prepared {
     arrays: Vec<(String, Array)>,
     parts: Vec<Prepared>,
+    /// See [`Prepared::is_fleeting`].
+    fleeting: bool,
 }
 
 impl Prepared {
@@ -81,6 +83,18 @@ impl Prepared {
     #[must_use]
     pub fn map_parts(self, change: impl FnMut(Prepared) -> Prepared) -> Prepared {
         Prepared { parts: self.parts.into_iter().map(change).collect(), ..self }
+    }
+
+    /// The same, which is not to be kept where `is`.
+    #[must_use]
+    pub fn fleeting(self, is: bool) -> Prepared {
+        Prepared { fleeting: is, ..self }
+    }
+
+    /// It, or a part of it, is made in a moment and depends on what made it, such as a graphics device: it is made again where another would be
+    /// read.
+    pub fn is_fleeting(&self) -> bool {
+        self.fleeting || self.parts.iter().any(Prepared::is_fleeting)
     }
 
     /// Its parts.
@@ -224,8 +238,11 @@ impl Store {
         Prepared::of_flat(container.into_arrays())
     }
 
-    /// Keeps a preparation.
+    /// Keeps a preparation, unless it is [fleeting](Prepared::is_fleeting).
     pub fn keep(&self, key: &str, prepared: &Prepared) -> Result<(), FileError> {
+        if prepared.is_fleeting() {
+            return Ok(());
+        }
         let (Some(folder), Some(path)) = (&self.folder, self.path(key)) else { return Ok(()) };
         let remedy = "free some space, or allow writing there";
         std::fs::create_dir_all(folder).map_err(|e| FileError::new(folder, e.to_string(), remedy))?;

@@ -9,6 +9,7 @@ use super::point::Triangle;
 use super::sampler::PathSampler;
 use super::waves::{MetalWaves, Waves};
 use super::{Contribution, Options, PathSample, View, is_spectral, path};
+use crate::lighting::probe::Raster;
 use crate::material::preset::Preset;
 use crate::material::{AlphaMode, Material, Reflectance};
 use crate::math::frame::Frame;
@@ -25,6 +26,8 @@ pub struct World {
     accel: Accel,
     lights: Lights,
     options: Options,
+    /// Draws what probes see; it is not of the scene, but whoever records a probe has a world.
+    raster: Option<Arc<dyn Raster>>,
     instances: Vec<Placed>,
     /// Cosine-weighted mean reflectance of the metal of each material; zero where it has none.
     fresnel_means: Vec<Vec3>,
@@ -76,7 +79,19 @@ impl World {
 
     /// The same for an edited scene; what is unchanged is shared.
     pub fn updated(&self, scene: &Arc<Scene>, options: Options) -> World {
-        World::of_parts(scene, options, self.accel.updated(scene), self.lights.updated(scene))
+        let new = World::of_parts(scene, options, self.accel.updated(scene), self.lights.updated(scene));
+        new.with_raster(self.raster.clone())
+    }
+
+    /// The same with someone who draws what probes see, or nobody: then paths are traced for these too.
+    #[must_use]
+    pub fn with_raster(self, raster: Option<Arc<dyn Raster>>) -> World {
+        World { raster, ..self }
+    }
+
+    /// Who draws what probes see.
+    pub fn raster(&self) -> Option<&Arc<dyn Raster>> {
+        self.raster.as_ref()
     }
 
     /// The world as settings made of [`super::PARAMS`] ask for it, by wavelength or not, from `old` where there is one; with
@@ -126,6 +141,7 @@ impl World {
             accel,
             lights,
             options,
+            raster: None,
             instances,
         }
     }

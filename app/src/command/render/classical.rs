@@ -10,7 +10,7 @@ use burnish_core::file::write_picture;
 use burnish_core::job::Handle;
 use burnish_core::lighting::{Layers, Method, classical};
 use burnish_core::param::Settings;
-use burnish_render::{Gpu, Renderer, View};
+use burnish_render::{Gpu, Passes, Renderer, View};
 use glam::UVec2;
 
 use super::{Output, assign, store, tell};
@@ -61,12 +61,14 @@ pub fn run(
     let frames = args.spp_jitter.unwrap_or(FRAMES);
     let scene = Arc::new(scene);
     let layers = Layers::of(method, settings.clone());
-    let lighting = lighting_now(&layers, &scene, &store(cache), &Handle::default()).map_err(Failure::resources)?;
+    let passes = Arc::new(Passes::new(&gpu));
+    let lighting = lighting_now(&layers, &scene, (&passes, &store(cache)), &Handle::default());
+    let lighting = lighting.map_err(Failure::resources)?;
     if let Some(prepared) = lighting.prepared() {
         tell(err, &method.warnings(&scene, prepared, &settings))?;
     }
     let view = View { size, camera, settings, jitter_frames: frames };
-    let mut renderer = Renderer::new(&gpu, &scene).map_err(Failure::resources)?;
+    let mut renderer = Renderer::with_passes(&passes, &scene).map_err(Failure::resources)?;
     renderer.light_by(&lighting).map_err(Failure::resources)?;
     for name in renderer.unshadowed_lights() {
         writeln!(err, "burnish: notice: light `{}` casts no shadow: the shadow maps are full", printable(name))?;

@@ -5,8 +5,11 @@
 mod map;
 mod sides;
 
+use std::sync::Arc;
+
 use burnish_core::document::Side;
 use burnish_core::lighting::Store;
+use burnish_core::lighting::probe::Raster;
 use burnish_core::measure::error_map::Metric;
 use eframe::egui;
 
@@ -115,8 +118,9 @@ impl Compare {
     }
 
     /// Notes what lights a side.
-    pub fn light(&mut self, side: Side, scene: &SideScene, ctx: &egui::Context) {
+    pub fn light(&mut self, side: Side, scene: &SideScene, raster: Option<Arc<dyn Raster>>, ctx: &egui::Context) {
         self.on_processor[side as usize] = !drawn_on_device(&scene.layers);
+        self.preparations[side as usize].draw_probes_by(raster);
         self.preparations[side as usize].follow(&scene.layers, &scene.scene, ctx);
     }
 

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use burnish_core::color::tone::ToneMap;
 use burnish_core::file::{write_environment, write_picture};
 use burnish_core::job::{Handle, Job};
+use burnish_core::lighting::probe::Raster;
 use burnish_core::lighting::{Layers, MethodError, Store};
 use burnish_core::picture::Picture;
 use burnish_core::reference::{self, Contribution, Film, Options, Pass, World};
 use burnish_core::scene::Environment;
-use burnish_render::{Gpu, Passes, Renderer, View};
+use burnish_render::{DeviceRaster, Gpu, Passes, Renderer, View};
 use eframe::egui;
 use glam::UVec2;
 
@@ -168,7 +169,9 @@ fn render(
     let progress = ctx.clone();
     let work = move |handle: &Handle| {
         if let Some(options) = on_processor {
-            let drawn = draw(&layers, &World::new(&scene, options), (&store, &view), handle)?;
+            let raster = passes.map(|passes| Arc::new(DeviceRaster::new(&passes)) as Arc<dyn Raster>);
+            let world = World::new(&scene, options).with_raster(raster);
+            let drawn = draw(&layers, &world, (&store, &view), handle)?;
             return drawn.map_or(Ok(String::new()), |picture| write(&picture, &path, tone, exposure_ev));
         }
         let passes = match passes {
@@ -176,7 +179,7 @@ fn render(
             None => Arc::new(Passes::new(&Gpu::new().map_err(|e| e.to_string())?)),
         };
         let mut renderer = Renderer::with_passes(&passes, &scene).map_err(|e| e.to_string())?;
-        let lighting = lighting_now(&layers, &scene, &store, handle).map_err(|e| e.to_string())?;
+        let lighting = lighting_now(&layers, &scene, (&passes, &store), handle).map_err(|e| e.to_string())?;
         renderer.light_by(&lighting).map_err(|e| e.to_string())?;
         renderer.show(contribution);
         let going_on = |fraction: f32| {

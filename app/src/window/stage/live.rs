@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
-use burnish_render::{Display, Drawn, Frame, Gpu, GpuError, Passes, PendingPicture, Plate, RenderError, Viewport};
+use burnish_render::{
+    DeviceRaster, Display, Drawn, Frame, Gpu, GpuError, Passes, PendingPicture, Plate, RenderError, Viewport,
+};
 use eframe::egui::TextureId;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -18,6 +20,8 @@ pub struct Live {
     viewport: Viewport,
     /// For pictures that are computed elsewhere.
     plate: Plate,
+    /// For what probes see.
+    raster: Arc<DeviceRaster>,
     texture: Known,
     /// The other side of a comparison, while there is one.
     second: Option<Second>,
@@ -64,6 +68,7 @@ impl Live {
         let viewport = Viewport::new(gpu);
         Live {
             plate: Plate::new(viewport.passes()),
+            raster: Arc::new(DeviceRaster::new(viewport.passes())),
             viewport,
             render,
             texture: None,
@@ -204,6 +209,7 @@ impl Live {
             let gpu = Gpu::from_parts(&self.render.adapter, self.render.device.clone(), self.render.queue.clone());
             self.viewport = Viewport::new(&gpu);
             self.plate = Plate::new(self.viewport.passes());
+            self.raster = Arc::new(DeviceRaster::new(self.viewport.passes()));
             self.close_second();
         } else {
             self.condition = Condition::GivenUp;
@@ -246,6 +252,11 @@ impl Live {
     /// The compiled passes.
     pub fn passes(&self) -> &Arc<Passes> {
         self.viewport.passes()
+    }
+
+    /// Draws what probes see, on another thread.
+    pub fn raster(&self) -> &Arc<DeviceRaster> {
+        &self.raster
     }
 
     /// Losses to tell the next run of the program about, when there must be one.

@@ -5,6 +5,7 @@ mod losses;
 
 use std::sync::Arc;
 
+use burnish_core::lighting::probe::Raster;
 use burnish_core::picture::Picture;
 use burnish_core::scene::{Picked, Scene};
 use burnish_render::{Display, Drawn, Frame, Passes, PendingPicture};
@@ -161,6 +162,14 @@ impl Stage {
         match self {
             Stage::Flat => None,
             Stage::Live(live) => Some(live.passes()),
+        }
+    }
+
+    /// Draws what probes see on the window's device.
+    pub fn raster(&self) -> Option<Arc<dyn Raster>> {
+        match self {
+            Stage::Flat => None,
+            Stage::Live(live) => Some(live.raster().clone()),
         }
     }
 

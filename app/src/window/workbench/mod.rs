@@ -267,6 +267,7 @@ impl Workbench {
             thumbnails,
             ..
         } = self;
+        preparations.draw_probes_by(stage.raster());
         preparations.follow(session.layers(), session.scene(), ui.ctx());
         let rests = reference.shown().is_some()
             || stage.status().is_none_or(|status| status.drawn.settled || status.drawn.frames >= RESTING_FRAMES);

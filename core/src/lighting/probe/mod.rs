@@ -7,6 +7,7 @@
 mod behind;
 mod bounds;
 mod distances;
+mod raster;
 pub(super) mod seen;
 mod sites;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use crate::reference::SurfacePoint;
 pub use behind::{Behind, behind};
 pub use bounds::{Cells, bounds};
 pub use distances::{DistanceCube, JUMP};
+pub use raster::Raster;
 pub use seen::surroundings;
 pub use sites::{Defaults, MOST, Site, Sites};
 pub use trace::{Surroundings, prepare};

@@ -111,7 +111,6 @@ fn probes_are_kept_in_parts_and_found_by_whom_they_serve() {
         position: Some(Vec3::new(x, 0.0, 0.0)),
         extent: Some(Vec3::ONE),
         serves,
-        source: ProbeSource::Raster,
         ..Default::default()
     };
     room.probes = vec![at(-0.3, Vec::new()), at(0.3, Vec::new()), at(0.0, vec![other])];

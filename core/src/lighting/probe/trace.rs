@@ -8,21 +8,18 @@ use rayon::prelude::*;
 use super::behind;
 use super::bounds::bounds;
 use super::distances::DistanceCube;
+use super::raster;
 use super::seen::surroundings;
 use super::{Site, Sites};
 use crate::job::Handle;
 use crate::lighting::impostor::Extent;
 use crate::lighting::{MethodError, Prepared, classical};
 use crate::math::sampling::hammersley;
-use crate::reference::{Options, World};
+use crate::reference::World;
 use crate::scene::{Environment, ProbeSource};
 
 /// Paths that are traced between two looks at the job.
 const ROW_PATHS: u32 = 1 << 14;
-/// Bounces of paths that bring direct light only.
-const DIRECT: u32 = 1;
-/// Most paths for a texel of a probe that is drawn in a moment.
-const RASTER_PATHS: u32 = 8;
 
 /// Records the probes of a scene, one part of the result for each. The same for any number of threads.
 pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, MethodError> {
@@ -74,14 +71,12 @@ fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodE
     let Surroundings { inverse, bounds, extent, shares, .. } = Surroundings::seen(around, middle, face);
     let map = match site.source {
         ProbeSource::Traced => panorama(around, middle, (face, site.paths), job)?,
-        ProbeSource::Raster => {
-            let options = Options { bounces: DIRECT, ..*around.options() };
-            panorama(&around.updated(around.scene(), options), middle, (face, site.paths.min(RASTER_PATHS)), job)?
-        }
+        ProbeSource::Raster => raster::light(around, site, job)?,
     };
     let first = layer(&map, Layer { middle, half, face, inverse, bounds, extent }, job)?
         .with("served", site.served.clone())
-        .with("shares", shares.to_vec());
+        .with("shares", shares.to_vec())
+        .fleeting(site.source == ProbeSource::Raster);
     if site.layers < 2 {
         return Ok(first);
     }
@@ -112,11 +107,13 @@ fn layer(map: &Environment, layer: Layer, job: &Handle) -> Result<Prepared, Meth
 
 /// The layer behind the first one; `front` is the light of that, which takes its place where there is nothing behind.
 fn second(around: &World, site: &Site, front: &Environment, job: &Handle) -> Result<Prepared, MethodError> {
-    let Site { middle, half, face, paths, .. } = *site;
+    let Site { middle, half, face, .. } = *site;
     let inverse = behind::distances(around, middle, face);
+    // No view shows what is hidden.
+    let (around, paths) = raster::traced(around, site);
     let (extent, bounds) = (extent(&inverse, face), bounds(face, &inverse));
     let map = map(front, paths, job, |place, direction, path| {
-        let from = behind::behind(around, middle, direction)?.from;
+        let from = behind::behind(&around, middle, direction)?.from;
         Some(around.along(middle + from * direction, direction, place, path).radiance)
     })?;
     layer(&map, Layer { middle, half, face, inverse, bounds, extent }, job)
@@ -158,7 +155,12 @@ fn extent(inverse: &[f32], face: u32) -> Extent {
 }
 
 /// The light of the surroundings as an equirectangular map, four times as wide as a face of the cube.
-fn panorama(around: &World, middle: Vec3, (face, paths): (u32, u32), job: &Handle) -> Result<Environment, MethodError> {
+pub(super) fn panorama(
+    around: &World,
+    middle: Vec3,
+    (face, paths): (u32, u32),
+    job: &Handle,
+) -> Result<Environment, MethodError> {
     let (width, height) = (4 * face, 2 * face);
     let black = Environment::new("probe", width, height, vec![Vec3::ZERO; (width * height) as usize]);
     map(&black, paths, job, |place, direction, path| Some(around.along(middle, direction, place, path).radiance))

@@ -33,7 +33,7 @@ pub fn blurred(map: &Environment, half_width_deg: f64) -> Environment {
 }
 
 /// Means over the solid angle of larger (or copies for smaller) texels.
-fn resized(map: &Environment, width: u32, height: u32) -> Environment {
+pub fn resized(map: &Environment, width: u32, height: u32) -> Environment {
     let (w, h) = (map.width.max(1) as usize, map.height.max(1) as usize);
     let source = |x: usize, y: usize| map.texels.get(y * w + x).copied().unwrap_or(Vec3::ZERO);
     let columns: Vec<Vec<(usize, f64)>> = (0..width as usize).map(|x| overlaps(x, width as usize, w)).collect();

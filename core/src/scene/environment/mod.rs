@@ -16,7 +16,7 @@ use crate::leaf::Leaf;
 use crate::math::cube;
 
 pub use background::{Backdrop, Background};
-pub use blur::{BLUR_MAX_DEG, blurred};
+pub use blur::{BLUR_MAX_DEG, blurred, resized};
 pub use ground::Ground;
 pub use sky::{SkyModel, TURBIDITY};
 pub use split::{NoSun, Split, Sun, split_sun};

@@ -67,7 +67,7 @@ pub fn ui(ui: &mut egui::Ui, response: &Response, context: &mut Context<'_>, fra
     }
     let scenes = Side::ALL.map(|side| {
         let scene = context.compare.sides.get(context.session, side);
-        context.compare.light(side, &scene, ui.ctx());
+        context.compare.light(side, &scene, context.stage.raster(), ui.ctx());
         scene
     });
     let turns = context.compare.turn(context.session);

@@ -5,14 +5,29 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// What the worker sees of its job.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Handle {
     cancelled: Arc<AtomicBool>,
     /// Fraction done, as bits of an f32.
     progress: Arc<AtomicU32>,
+    /// The part of the job that this one tells the progress of: from and to.
+    part: [f32; 2],
+}
+
+impl Default for Handle {
+    fn default() -> Handle {
+        Handle { cancelled: Arc::default(), progress: Arc::default(), part: [0.0, 1.0] }
+    }
 }
 
 impl Handle {
+    /// That of a part of the job, which goes from one fraction done to another.
+    #[must_use]
+    pub fn part(&self, from: f32, to: f32) -> Handle {
+        let [first, last] = self.part;
+        Handle { part: [from, to].map(|fraction| first + fraction * (last - first)), ..self.clone() }
+    }
+
     /// True once the result is no longer wanted; long work asks often.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
@@ -28,9 +43,10 @@ impl Handle {
         f32::from_bits(self.progress.load(Ordering::Relaxed))
     }
 
-    /// Tells the fraction done, 0 to 1.
+    /// Tells the fraction done, 0 to 1, of its part.
     pub fn set_progress(&self, fraction: f32) {
-        self.progress.store(fraction.to_bits(), Ordering::Relaxed);
+        let [from, to] = self.part;
+        self.progress.store((from + fraction * (to - from)).to_bits(), Ordering::Relaxed);
     }
 }
 
@@ -167,5 +183,17 @@ mod tests {
         assert_eq!(job.poll(), Outcome::Running);
         job.cancel();
         assert_eq!(wait(&mut job, woken), Outcome::Done("ended"));
+    }
+
+    #[test]
+    fn a_part_tells_its_share_of_the_whole() {
+        let job = Handle::default();
+        let half = job.part(0.5, 1.0);
+        half.part(0.0, 0.5).set_progress(0.5);
+        assert_eq!(job.progress(), 0.625);
+        half.set_progress(1.0);
+        assert_eq!(job.progress(), 1.0);
+        job.cancel();
+        assert!(half.is_cancelled());
     }
 }

@@ -75,12 +75,12 @@ enum Wanted {
 
 /// What a job found.
 enum Found {
-    /// The held one is right.
-    Same,
+    /// The held one is right; where it fails now, for what is served may have moved.
+    Same(Vec<String>),
     /// It is not, and nobody asked for another.
     Other,
-    /// The held draft is that of the subject.
-    SameDraft,
+    /// The held draft is that of the subject; likewise.
+    SameDraft(Vec<String>),
     Drafted(Held),
     Made(Held),
     Failed(MethodError),
@@ -117,7 +117,7 @@ impl Subject {
     /// Compares what is held by `known` with the subject; makes another as `wanted`.
     fn work(
         &self,
-        known: Option<String>,
+        known: Option<(String, Arc<Prepared>)>,
         wanted: Wanted,
         store: &Store,
         world: &Mutex<Option<World>>,
@@ -125,8 +125,9 @@ impl Subject {
     ) -> Found {
         let Subject { method, settings, scene, raster } = self;
         let key = key(*method, settings, scene);
-        if known.as_ref() == Some(&key) {
-            return Found::Same;
+        let same = |key: &String| known.as_ref().filter(|(known, _)| known == key).map(|(_, prepared)| prepared);
+        if let Some(prepared) = same(&key) {
+            return Found::Same(method.warnings(scene, prepared, settings));
         }
         let start = Instant::now();
         let held = |key: String, prepared: Prepared| {
@@ -137,8 +138,8 @@ impl Subject {
             return Found::Made(held(key, kept));
         }
         let draft = format!("draft {key}");
-        if wanted == Wanted::Draft && known.as_ref() == Some(&draft) {
-            return Found::SameDraft;
+        if let Some(prepared) = same(&draft).filter(|_| wanted == Wanted::Draft) {
+            return Found::SameDraft(method.warnings(scene, prepared, settings));
         }
         if wanted == Wanted::Comparison {
             return Found::Other;
@@ -244,7 +245,7 @@ impl Preparation {
     /// Ends what runs; a stale one stays in use.
     pub fn cancel(&mut self) {
         self.job = None;
-        (self.full_at, self.is_whole) = (None, false);
+        (self.full_at, self.is_whole, self.outdated) = (None, false, false);
         self.state = Some(if self.held.is_some() { State::Stale } else { State::Missing });
     }
 
@@ -255,7 +256,8 @@ impl Preparation {
             (self.job, self.held, self.state) = (None, None, Some(State::Needless));
             return;
         }
-        let (known, store, ctx) = (self.held.as_ref().map(|held| held.key.clone()), self.store.clone(), ctx.clone());
+        let (known, store, ctx) =
+            (self.held.as_ref().map(|held| (held.key.clone(), held.prepared.clone())), self.store.clone(), ctx.clone());
         self.is_whole = wanted == Wanted::Whole && subject.method.drafts();
         let world = self.world.clone();
         let label = format!("Preparing {}", subject.method.info().title);
@@ -273,13 +275,23 @@ impl Preparation {
         };
         self.job = None;
         self.is_whole = false;
+        self.full_at = None;
+        if !matches!(found, Found::Failed(_)) {
+            self.fault = None;
+        }
         self.state = Some(match found {
-            Found::Same => State::Fresh,
+            Found::Same(warnings) => {
+                self.warn(warnings);
+                State::Fresh
+            }
             Found::Other => State::Stale,
-            found @ (Found::Drafted(_) | Found::SameDraft) => {
-                if let Found::Drafted(held) = found {
-                    self.held = Some(held);
-                }
+            Found::Drafted(held) => {
+                self.held = Some(held);
+                self.full_at = Some(Instant::now() + REST);
+                State::Draft
+            }
+            Found::SameDraft(warnings) => {
+                self.warn(warnings);
                 self.full_at = Some(Instant::now() + REST);
                 State::Draft
             }
@@ -288,10 +300,18 @@ impl Preparation {
                 State::Fresh
             }
             Found::Failed(error) => {
-                self.fault = Some(error.to_string());
+                if !self.outdated {
+                    self.fault = Some(error.to_string());
+                }
                 if self.held.is_some() { State::Stale } else { State::Missing }
             }
         });
+    }
+
+    fn warn(&mut self, warnings: Vec<String>) {
+        if let Some(held) = &mut self.held {
+            held.warnings = warnings;
+        }
     }
 
     /// How it stands.

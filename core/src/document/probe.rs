@@ -27,13 +27,13 @@ pub struct ProbeEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extent: Option<[f64; 3]>,
     /// Texels along the edge of a face, see [`RESOLUTIONS`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "whole")]
     pub resolution: Option<u32>,
     /// One of [`ProbeSource::id`].
     #[serde(default, skip_serializing_if = "is_default")]
     pub source: String,
     /// Paths for a texel, see [`PATHS`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "whole")]
     pub paths: Option<u32>,
     /// Keys of the objects that it serves; the subject when empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -41,6 +41,11 @@ pub struct ProbeEntry {
     /// Fields that this version does not know.
     #[serde(flatten)]
     pub other: Map<String, Value>,
+}
+
+/// Any number as the nearest whole one that there is: it is brought into its range later.
+fn whole<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.map(|number| number.round() as u32))
 }
 
 impl ProbeEntry {
@@ -66,17 +71,21 @@ impl ProbeEntry {
         self.extent.map(|extent| Vec3::from_array(extent.map(positive)))
     }
 
-    /// The probe of a scene; numbers out of range are brought into it. `keys` are those of the instances.
-    pub fn probe(&self, keys: &[String]) -> Probe {
-        Probe {
+    /// The probe of a scene; numbers out of range are brought into it. `keys` are those of the instances. `None` where it names objects of which
+    /// there is none.
+    pub fn probe(&self, keys: &[String]) -> Option<Probe> {
+        let serves: Vec<usize> =
+            self.serves.iter().filter_map(|key| keys.iter().position(|known| known == key)).collect();
+        let is_lost = serves.is_empty() && !self.serves.is_empty();
+        (!is_lost).then(|| Probe {
             name: self.name.clone(),
             position: self.place(),
             extent: self.half(),
             resolution: self.resolution.map(|texels| texels.clamp(*RESOLUTIONS.start(), *RESOLUTIONS.end())),
             source: self.source(),
             paths: self.paths.map(|paths| paths.clamp(*PATHS.start(), *PATHS.end())),
-            serves: self.serves.iter().filter_map(|key| keys.iter().position(|known| known == key)).collect(),
-        }
+            serves,
+        })
     }
 }
 
@@ -128,8 +137,11 @@ impl Document {
     }
 
     /// Puts probes for some objects, the subject where `serves` is empty, in these places instead of those that serve the same; returns
-    /// the name of the first.
+    /// the name of the first. Without places all stays.
     pub fn place_probes(&mut self, serves: &[String], places: &[Vec3]) -> String {
+        if places.is_empty() {
+            return String::new();
+        }
         let kept = self.probes.iter().find(|probe| probe.serves == serves).cloned().unwrap_or_default();
         self.probes.retain(|probe| probe.serves != serves);
         let mut first = None;
@@ -145,7 +157,9 @@ impl Document {
 
     /// Takes a probe away.
     pub fn remove_probe(&mut self, name: &str) {
-        self.probes.retain(|probe| probe.name != name);
+        if let Some(place) = self.probes.iter().position(|probe| probe.name == name) {
+            self.probes.remove(place);
+        }
     }
 }
 
@@ -157,8 +171,10 @@ pub(super) fn unknown(probes: &[ProbeEntry], keys: &[String]) -> Vec<String> {
         if !source.is_empty() && ProbeSource::ALL.iter().all(|known| known.id() != source) {
             notices.push(format!("probe `{}`: source `{source}` is not in this version; it is traced", probe.name));
         }
+        let is_lost = !probe.serves.is_empty() && probe.serves.iter().all(|key| !keys.contains(key));
+        let then = if is_lost { "it is left out: let it serve another" } else { "it serves the others" };
         for key in probe.serves.iter().filter(|key| !keys.contains(key)) {
-            notices.push(format!("probe `{}`: there is no object `{key}`; it serves the others", probe.name));
+            notices.push(format!("probe `{}`: there is no object `{key}`; {then}", probe.name));
         }
     }
     notices
@@ -186,7 +202,12 @@ mod tests {
         // JSON has no word for it.
         document.probe_mut(&format!("{name} 2")).unwrap().position = Some([0.0, f64::NAN, 1e30]);
         let resolved = resolve(&document, &opened.sources, &mut Curves::default());
-        assert_eq!(resolved.notices.len(), 1, "{:?}", resolved.notices);
+        assert!(resolved.notices.len() == 1 && resolved.notices[0].contains("left out"), "{:?}", resolved.notices);
+        assert_eq!(resolved.scene.probes.len(), 1, "one whose objects are gone serves nothing");
+        let there = crate::document::object_keys(&resolved.scene).pop().unwrap();
+        document.probe_mut(&format!("{name} 2")).unwrap().serves.push(there);
+        let resolved = resolve(&document, &opened.sources, &mut Curves::default());
+        assert!(resolved.notices.len() == 1 && resolved.notices[0].contains("the others"), "{:?}", resolved.notices);
         assert!(resolved.scene.validate().is_ok());
         let [plain, other] = &resolved.scene.probes[..] else { panic!("two probes") };
         assert_eq!((plain.position, plain.source), (None, ProbeSource::Traced));
@@ -195,10 +216,18 @@ mod tests {
         document.remove_probe(&name);
         assert_eq!(document.probes.len(), 1);
         document.probes[0].serves.clear();
+        assert_eq!((document.place_probes(&[], &[]), document.probes.len()), (String::new(), 1));
         let first = document.place_probes(&[], &[Vec3::X, Vec3::Y]);
         assert_eq!(document.probes.len(), 2);
         let probe = document.probe(&first).unwrap();
         assert_eq!((probe.place(), probe.extent, probe.source()), (Some(Vec3::X), None, ProbeSource::Raster));
+        let odd = r#"{"name":"odd","resolution":-5,"paths":1e300}"#;
+        let odd = serde_json::from_str::<ProbeEntry>(odd).unwrap().probe(&[]).unwrap();
+        assert_eq!((odd.resolution, odd.paths), (Some(16), Some(65_536)));
+        let twice = document.probes[0].clone();
+        document.probes.push(twice.clone());
+        document.remove_probe(&twice.name);
+        assert_eq!(document.probes.last(), Some(&twice), "only one goes");
         document.probes[0].source = "painted".into();
         let notices = resolve(&document, &opened.sources, &mut Curves::default()).notices;
         assert!(notices.iter().any(|notice| notice.contains("painted")), "{notices:?}");

@@ -150,7 +150,7 @@ pub fn resolve(document: &Document, sources: &Sources, curves: &mut Curves) -> R
         scene.lights = shining(lights, &object_keys);
     }
     notices.extend(super::probe::unknown(&document.probes, &object_keys));
-    scene.probes.extend(document.probes.iter().map(|probe| probe.probe(&object_keys)));
+    scene.probes.extend(document.probes.iter().filter_map(|probe| probe.probe(&object_keys)));
     if !document.subject.is_empty() {
         let chosen = |key: &String| document.subject.contains(key);
         scene.subject = (0..object_keys.len()).filter(|i| chosen(&object_keys[*i])).collect();

@@ -50,17 +50,22 @@ impl Still {
 
     /// Starts anew. The sums stay what they are until the first frame is whole.
     pub fn restart(&mut self) {
+        if let Some((sum, frames)) = self.before.take().filter(|_| self.done == 0) {
+            // Nothing has come after it yet: it is what is shown.
+            self.sums.put(sum);
+            self.frames = frames;
+        }
         self.done = 0;
         self.current = None;
-        self.before = None;
     }
 
     /// Starts anew with the same view of the same surfaces: the picture fades into the next.
     pub fn replace(&mut self, passes: &Passes) {
         let before = match self.before.take() {
-            // Nothing has come after it yet.
-            Some(before) if self.done == 0 => Some(before),
-            _ => (self.frames > 0).then(|| (self.sums.take(&passes.gpu), self.frames)),
+            // It is most of what is shown.
+            Some(before) if 2 * self.done < FADE => Some(before),
+            // Without a frame since a restart there is only a picture from elsewhere.
+            _ => (self.done > 0).then(|| (self.sums.take(&passes.gpu), self.frames)),
         };
         self.restart();
         self.before = before;

@@ -99,7 +99,7 @@ static INFO: MethodInfo = MethodInfo {
         emission: Cover::None,
     },
     reads: Reads { probes: true, ..Reads::ALL },
-    revision: 1,
+    revision: 2,
 };
 
 /// The array of a probe that holds its coarse cubes, those of all [`EDGES`].

@@ -130,7 +130,7 @@ static INFO: MethodInfo = MethodInfo {
         emission: Cover::None,
     },
     reads: Reads { probes: true, ..Reads::ALL },
-    revision: 3,
+    revision: 4,
 };
 
 impl Method for Impostor {

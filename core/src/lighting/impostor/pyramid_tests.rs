@@ -95,3 +95,18 @@ fn whatever_is_kept_a_place_is_finite_and_not_behind_the_point() {
         }
     }
 }
+
+#[test]
+fn a_wall_between_the_middles_of_texels_is_not_passed() {
+    let scene = gallery::open("room").unwrap();
+    let served: Vec<u32> = scene.subject.iter().map(|i| *i as u32).collect();
+    let around = World::new(&Arc::new(surroundings(&scene, &served)), Options::default());
+    let seen = Surroundings::seen(&around, Vec3::ZERO, 16);
+    let rays = [Vec3::X, Vec3::NEG_X, Vec3::NEG_Z, Vec3::ONE.normalize(), Vec3::new(-1.0, -1.0, -1.0).normalize()];
+    for (solver, r) in [Solver::March, Solver::Pyramid].into_iter().flat_map(|solver| rays.map(|r| (solver, r))) {
+        let effort = Effort { solver, refinements: 10, steps: 64, tolerance: 0.05 };
+        let found = solve(&seen.distances(), &seen.extent, Vec3::splat(0.001), r, &effort);
+        let wanted = around.distance(Vec3::splat(0.001), r).unwrap();
+        assert!(found.is_hit && (found.t - wanted).abs() < 0.02 * wanted, "{solver:?} {r}: {found:?} {wanted}");
+    }
+}

@@ -1,8 +1,10 @@
 //! The second layer of what a probe records: surfaces behind those that it sees.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::DistanceCube;
+use crate::job::Handle;
 use crate::reference::{Sighted, World};
 
 /// Most surfaces that a ray goes through.
@@ -41,10 +43,12 @@ fn closes(first: &Sighted, second: &Sighted) -> bool {
     second.from_behind && (!second.two_sided || second.instance == first.instance)
 }
 
-/// What is kept of the distances of the second layer, as of the first: 0 where there is none.
-pub fn distances(world: &World, middle: Vec3, face: u32) -> Vec<f32> {
-    use rayon::prelude::*;
+/// What is kept of the distances of the second layer, as of the first: 0 where there is none, and of a job that is cancelled.
+pub fn distances(world: &World, middle: Vec3, face: u32, job: &Handle) -> Vec<f32> {
     let texel = |i: u32| {
+        if job.is_cancelled() {
+            return 0.0;
+        }
         let (side, y, x) = (i / (face * face), i / face % face, i % face);
         let met = behind(world, middle, DistanceCube::direction(face, side, x, y));
         DistanceCube::kept(face, x, y, met.map(|met| met.to))

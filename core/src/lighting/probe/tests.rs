@@ -186,7 +186,7 @@ fn behind_a_body_is_the_wall_and_behind_the_wall_nothing() {
     assert!(found.from >= ball.max.x - origin.x - 1e-3 && found.from < found.to, "{found:?}");
     assert_eq!(behind(&world, origin, -Vec3::X), None);
     let face = 8;
-    let kept = distances_behind(&world, origin, face);
+    let kept = distances_behind(&world, origin, face, &Handle::default());
     let cube = DistanceCube::new(face, &kept, &[]);
     assert!((cube.distance(Vec3::X) - 1.9).abs() < 1e-3, "{}", cube.distance(Vec3::X));
     assert_eq!(cube.distance(Vec3::NEG_X), 0.0);

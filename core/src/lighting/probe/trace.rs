@@ -25,14 +25,15 @@ const ROW_PATHS: u32 = 1 << 14;
 pub fn prepare(world: &World, sites: &Sites, job: &Handle) -> Result<Prepared, MethodError> {
     let mut parts = Vec::with_capacity(sites.list.len());
     let mut around: Option<(&[u32], World)> = None;
+    let share = |done: usize| done as f32 / sites.list.len() as f32;
     for site in &sites.list {
         let world = match around.take() {
             // Most often all serve the same.
             Some((served, around)) if served == site.served => around,
             _ => world.updated(&Arc::new(surroundings(world.scene(), &site.served)), *world.options()),
         };
-        parts.push(record(&world, site, job)?);
-        job.set_progress(parts.len() as f32 / sites.list.len() as f32);
+        parts.push(record(&world, site, &job.part(share(parts.len()), share(parts.len() + 1)))?);
+        job.set_progress(share(parts.len()));
         around = Some((&site.served, world));
     }
     Ok(Prepared::nothing().with_parts(parts))
@@ -55,7 +56,12 @@ pub struct Surroundings {
 impl Surroundings {
     /// What is seen from a place, with `face` texels along the edge of a face.
     pub fn seen(around: &World, middle: Vec3, face: u32) -> Surroundings {
-        let (inverse, shares) = distances(around, middle, face);
+        Surroundings::seen_while(around, middle, face, &Handle::default())
+    }
+
+    /// The same; of a job that is cancelled nothing that counts.
+    fn seen_while(around: &World, middle: Vec3, face: u32, job: &Handle) -> Surroundings {
+        let (inverse, shares) = distances(around, middle, face, job);
         Surroundings { middle, extent: extent(&inverse, face), face, bounds: bounds(face, &inverse), inverse, shares }
     }
 
@@ -68,7 +74,9 @@ impl Surroundings {
 /// Records one; `around` is the scene without what it serves.
 fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodError> {
     let Site { middle, half, face, .. } = *site;
-    let Surroundings { inverse, bounds, extent, shares, .. } = Surroundings::seen(around, middle, face);
+    let Surroundings { inverse, bounds, extent, shares, .. } = Surroundings::seen_while(around, middle, face, job);
+    let whole = job;
+    let job = &if site.layers < 2 { job.clone() } else { job.part(0.0, 0.5) };
     let map = match site.source {
         ProbeSource::Traced => panorama(around, middle, (face, site.paths), job)?,
         ProbeSource::Raster => raster::light(around, site, job)?,
@@ -80,7 +88,7 @@ fn record(around: &World, site: &Site, job: &Handle) -> Result<Prepared, MethodE
     if site.layers < 2 {
         return Ok(first);
     }
-    Ok(first.with_parts(vec![second(around, site, &map, job)?]))
+    Ok(first.with_parts(vec![second(around, site, &map, &whole.part(0.5, 1.0))?]))
 }
 
 /// What is known of a layer of surfaces but for their light.
@@ -108,7 +116,7 @@ fn layer(map: &Environment, layer: Layer, job: &Handle) -> Result<Prepared, Meth
 /// The layer behind the first one; `front` is the light of that, which takes its place where there is nothing behind.
 fn second(around: &World, site: &Site, front: &Environment, job: &Handle) -> Result<Prepared, MethodError> {
     let Site { middle, half, face, .. } = *site;
-    let inverse = behind::distances(around, middle, face);
+    let inverse = behind::distances(around, middle, face, job);
     // No view shows what is hidden.
     let (around, paths) = raster::traced(around, site);
     let (extent, bounds) = (extent(&inverse, face), bounds(face, &inverse));
@@ -120,8 +128,11 @@ fn second(around: &World, site: &Site, front: &Environment, job: &Handle) -> Res
 }
 
 /// What is kept of the distances, and the shares of the texels that are sky and that see a surface from behind.
-fn distances(around: &World, middle: Vec3, face: u32) -> (Vec<f32>, [f32; 2]) {
+fn distances(around: &World, middle: Vec3, face: u32, job: &Handle) -> (Vec<f32>, [f32; 2]) {
     let texel = |i: u32| {
+        if job.is_cancelled() {
+            return (0.0, false);
+        }
         let (side, y, x) = (i / (face * face), i / face % face, i % face);
         let met = around.sighted(middle, DistanceCube::direction(face, side, x, y));
         let behind = met.is_some_and(|met| met.from_behind && !met.two_sided);
@@ -151,6 +162,9 @@ fn extent(inverse: &[f32], face: u32) -> Extent {
     if count == 0 {
         return Extent { near: 1.0, far: 1.0, radius: 1.0, low: Vec3::NEG_ONE, high: Vec3::ONE };
     }
+    // Between the middles of texels a wall comes nearer, and a corner goes farther.
+    let texel = 1.0 / face.max(1) as f32;
+    let (near, far) = (near / (1.0 + 2.0 * texel * texel).sqrt(), far * (1.0 + texel));
     Extent { near, far, radius: (sum / f64::from(count)) as f32, low: low.min(Vec3::ZERO), high: high.max(Vec3::ZERO) }
 }
 

@@ -34,6 +34,11 @@ impl Sums {
         std::mem::replace(&mut self.textures[self.current], fresh)
     }
 
+    /// Takes a sum back.
+    pub fn put(&mut self, sum: wgpu::Texture) {
+        self.textures[self.current] = sum;
+    }
+
     /// Starts from zero.
     pub fn clear(&mut self, encoder: &mut wgpu::CommandEncoder) {
         let view = self.texture().create_view(&Default::default());

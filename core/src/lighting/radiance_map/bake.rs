@@ -74,7 +74,7 @@ pub fn bake(world: &World, directions: &Directions, asked: Asked, job: &Handle) 
             "all surfaces are seen from behind only: turn the normals of the model around, or make its materials double-sided".into(),
         ));
     }
-    Ok(stored(&places, &lit, surfaces.area()))
+    Ok(stored(&places, &lit, directions, surfaces.area()))
 }
 
 /// What arrives at a place.
@@ -87,7 +87,7 @@ struct Light {
 }
 
 /// Puts places and light in the order of a grid, with their neighbours.
-fn stored(places: &[Place], lit: &[Light], area: f64) -> Prepared {
+fn stored(places: &[Place], lit: &[Light], directions: &Directions, area: f64) -> Prepared {
     let positions: Vec<Vec3> = places.iter().map(|place| place.position).collect();
     let grid = near::Grid::around(&positions, area);
     let order = grid.order(&positions);
@@ -111,6 +111,7 @@ fn stored(places: &[Place], lit: &[Light], area: f64) -> Prepared {
     }
     let [low, edge] = [grid.low.to_array(), [grid.edge, 0.0, 0.0]];
     prepared
+        .with("directions", vec![directions.spread() as u32, directions.len() as u32])
         .with("positions", positions)
         .with("normals", normals)
         .with("grid", [low, edge].concat())

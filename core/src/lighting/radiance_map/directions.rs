@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// How directions are spread over the sphere.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Spread {
     /// A spiral with cells of nearly one size.
     #[default]
@@ -39,6 +39,7 @@ struct Cell {
 /// Directions with their Voronoi cells.
 #[derive(Clone, Debug)]
 pub struct Directions {
+    spread: Spread,
     list: Vec<Vec3>,
     solid_angles: Vec<f32>,
     cells: Vec<Cell>,
@@ -65,7 +66,12 @@ impl Directions {
         // Twice the radius of the widest cell.
         let widest = cells.iter().flat_map(|cell| &cell.corners).map(|p| p.length().atan()).fold(0.0, f64::max);
         let reach = (2.0 * widest).min(PI).cos() as f32;
-        Directions { list: list.iter().map(|d| d.as_vec3()).collect(), solid_angles, cells, reach }
+        Directions { spread, list: list.iter().map(|d| d.as_vec3()).collect(), solid_angles, cells, reach }
+    }
+
+    /// How they are spread.
+    pub fn spread(&self) -> Spread {
+        self.spread
     }
 
     /// How many.

@@ -160,7 +160,7 @@ impl Method for RadianceMap {
 
     fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
         let [points, paths, seed] = [POINTS, PATHS, SEED].map(|spec| whole(settings, &spec));
-        bake(world, &directions(settings), Asked { points, paths, seed }, job)
+        bake(world, &asked_directions(settings), Asked { points, paths, seed }, job)
     }
 
     fn points(&self) -> Option<&dyn ShadePoint> {
@@ -186,17 +186,28 @@ fn is_choice(settings: &Settings, spec: &ParamSpec, place: usize) -> bool {
     settings.get(spec.key).unwrap_or(spec.default()) == ParamValue::Choice(place)
 }
 
-/// The directions of settings, made once.
-fn directions(settings: &Settings) -> Arc<Directions> {
-    type Made = HashMap<(bool, u32), Arc<Directions>>;
+/// Directions, made once for all who ask.
+fn directions(spread: Spread, count: u32) -> Arc<Directions> {
+    type Made = HashMap<(Spread, u32), Arc<Directions>>;
     static MADE: LazyLock<RwLock<Made>> = LazyLock::new(RwLock::default);
-    let key = (is_choice(settings, &SPREAD, 1), whole(settings, &DIRECTIONS));
+    let key = (spread, count);
     if let Some(made) = MADE.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
         return made.clone();
     }
-    let spread = if key.0 { Spread::Halton } else { Spread::Fibonacci };
-    let made = Arc::new(Directions::new(spread, key.1));
+    let made = Arc::new(Directions::new(spread, count));
     MADE.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_insert(made).clone()
+}
+
+/// Those of settings made of [`PARAMS`].
+fn asked_directions(settings: &Settings) -> Arc<Directions> {
+    let spread = if is_choice(settings, &SPREAD, 1) { Spread::Halton } else { Spread::Fibonacci };
+    directions(spread, whole(settings, &DIRECTIONS))
+}
+
+/// Those of a map; `None` where there is no map.
+fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
+    let [spread, count] = *prepared.whole("directions") else { return None };
+    Some(directions(*Spread::ALL.get(spread as usize)?, count))
 }
 
 /// What was baked, ready for lookups.
@@ -211,9 +222,9 @@ struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// `None` where a preparation has no map of these directions.
+    /// `None` where a preparation has no map.
     fn of(prepared: &'a Prepared, settings: &Settings) -> Option<Map<'a>> {
-        let directions = directions(settings);
+        let directions = baked_directions(prepared)?;
         let (positions, normals) = (prepared.floats("positions"), prepared.floats("normals"));
         let size = UVec3::from_slice(prepared.whole("cells").get(..3)?);
         let grid = Grid { low: prepared.vector("grid", 0), edge: prepared.vector("grid", 1).x, size };

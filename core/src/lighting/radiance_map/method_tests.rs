@@ -130,10 +130,13 @@ fn a_bake_is_the_same_on_any_number_of_threads_and_ends_when_it_is_told() {
 }
 
 #[test]
-fn a_map_of_other_directions_is_not_used() {
+fn a_map_knows_its_directions_and_what_is_no_map_is_not_used() {
     let world = world("room", |_| ());
-    let prepared = baked(&world, &settings(&[("points", "600"), ("paths", "1")]));
-    assert!(Map::of(&prepared, &settings(&[])).is_some());
-    assert!(Map::of(&prepared, &settings(&[("directions", "18")])).is_none());
+    let prepared = baked(&world, &settings(&[("points", "600"), ("paths", "1"), ("directions", "18")]));
+    let map = Map::of(&prepared, &settings(&[])).unwrap();
+    assert_eq!((map.directions.len(), map.directions.spread()), (18, Spread::Fibonacci));
     assert!(Map::of(&Prepared::nothing(), &settings(&[])).is_none());
+    // Cut short.
+    let cut = prepared.halves(GROUPS[2])[3..].to_vec();
+    assert!(Map::of(&Prepared::nothing().with(GROUPS[2], cut), &settings(&[])).is_none());
 }

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod bake;
 mod chart;
 mod compare;
 mod doctor;
@@ -14,7 +15,9 @@ mod glb;
 mod hits;
 mod info;
 mod lighting;
+mod line;
 mod measure;
+mod merge;
 mod methods;
 pub mod open;
 mod presets;
@@ -34,6 +37,10 @@ use crate::failure::{Exit, Failure};
 pub enum Command {
     /// Render a scene to a picture
     Render(render::Args),
+    /// Prepare a lighting method for a scene, or a part of that, and keep it in a file
+    Bake(bake::Args),
+    /// Join the parts of a bake, or bakes of different seeds
+    Merge(merge::Args),
     /// Write a scene for another renderer or viewer, with a report of what that cannot hold
     Export(export::Args),
     /// List, render or write the built-in scenes
@@ -72,6 +79,8 @@ impl Command {
     pub fn run(self, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
         match self {
             Command::Render(args) => render::run(args, out, err),
+            Command::Bake(args) => bake::run(args, out, err),
+            Command::Merge(args) => merge::run(args, out),
             Command::Export(args) => export::run(args, out, err),
             Command::Gallery(args) => gallery::run(args, out, err),
             Command::Environment(args) => environment::run(args, out),

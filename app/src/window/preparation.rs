@@ -7,7 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use burnish_core::job::{Handle, Job, Outcome};
-use burnish_core::lighting::prepared::{Store, key};
+use burnish_core::lighting::prepared::{Origin, Store};
 use burnish_core::lighting::probe::Raster;
 use burnish_core::lighting::{Method, MethodError, MethodId, Prepared, Reads};
 use burnish_core::param::Settings;
@@ -40,6 +40,9 @@ pub enum State {
     Draft,
     /// Of the scene before an edit.
     Stale,
+    /// Likewise, but what was edited is lit rightly by it, and another is made when nothing changes for a while. So much of the light that
+    /// arrives at surfaces is wrong, root mean square, where that is known.
+    Aged(Option<f32>),
 }
 
 /// What a preparation is for.
@@ -55,11 +58,31 @@ struct Subject {
 /// One that is there.
 struct Held {
     method: MethodId,
-    key: String,
+    origin: Origin,
+    scene: Arc<Scene>,
+    is_draft: bool,
     prepared: Arc<Prepared>,
     took: Duration,
     /// Where it fails, for people.
     warnings: Vec<String>,
+}
+
+/// What a job knows of what is held.
+struct Known {
+    origin: Origin,
+    scene: Arc<Scene>,
+    is_draft: bool,
+    prepared: Arc<Prepared>,
+}
+
+impl Known {
+    /// It stays in use for a scene of another origin.
+    fn outlives(&self, method: &dyn Method, other: &Origin) -> bool {
+        let outlived = method.outlives().parts();
+        let is_outlived = |part: &&str| outlived.iter().any(|(name, does)| *does && name == part);
+        let is_same_kind = self.origin.method == other.method && self.origin.other_settings(other).is_empty();
+        !self.is_draft && is_same_kind && self.origin.other_parts(other).iter().all(is_outlived)
+    }
 }
 
 /// What a job is to do.
@@ -79,6 +102,8 @@ enum Found {
     Same(Vec<String>),
     /// It is not, and nobody asked for another.
     Other,
+    /// It is not, but it stays in use while another is made, see [`Method::outlives`].
+    Aged(Option<f32>),
     /// The held draft is that of the subject; likewise.
     SameDraft(Vec<String>),
     Drafted(Held),
@@ -117,29 +142,30 @@ impl Subject {
     /// Compares what is held by `known` with the subject; makes another as `wanted`.
     fn work(
         &self,
-        known: Option<(String, Arc<Prepared>)>,
+        known: Option<Known>,
         wanted: Wanted,
         store: &Store,
         world: &Mutex<Option<World>>,
         job: &Handle,
     ) -> Found {
         let Subject { method, settings, scene, raster } = self;
-        let key = key(*method, settings, scene);
-        let same = |key: &String| known.as_ref().filter(|(known, _)| known == key).map(|(_, prepared)| prepared);
-        if let Some(prepared) = same(&key) {
-            return Found::Same(method.warnings(scene, prepared, settings));
+        let origin = Origin::of(*method, settings, scene);
+        let key = origin.key();
+        let same = |draft: bool| known.as_ref().filter(|known| known.is_draft == draft && known.origin == origin);
+        if let Some(known) = same(false) {
+            return Found::Same(method.warnings(scene, &known.prepared, settings));
         }
         let start = Instant::now();
-        let held = |key: String, prepared: Prepared| {
+        let held = |prepared: Arc<Prepared>, is_draft: bool| {
             let (took, warnings) = (start.elapsed(), method.warnings(scene, &prepared, settings));
-            Held { method: method.info().id, key, prepared: Arc::new(prepared), took, warnings }
+            let (origin, scene) = (origin.clone(), scene.clone());
+            Held { method: method.info().id, origin, scene, is_draft, prepared, took, warnings }
         };
         if let Some(kept) = store.read(&key) {
-            return Found::Made(held(key, kept));
+            return Found::Made(held(Arc::new(kept), false));
         }
-        let draft = format!("draft {key}");
-        if let Some(prepared) = same(&draft).filter(|_| wanted == Wanted::Draft) {
-            return Found::SameDraft(method.warnings(scene, prepared, settings));
+        if let Some(known) = same(true).filter(|_| wanted == Wanted::Draft) {
+            return Found::SameDraft(method.warnings(scene, &known.prepared, settings));
         }
         if wanted == Wanted::Comparison {
             return Found::Other;
@@ -150,14 +176,17 @@ impl Subject {
         let world = world.with_raster(raster.clone());
         *last = Some(world.clone());
         drop(last);
+        if let Some(old) = known.as_ref().filter(|known| wanted == Wanted::Draft && known.outlives(*method, &origin)) {
+            return Found::Aged(method.age(&world.updated(&old.scene, options), &world, settings));
+        }
         if wanted == Wanted::Draft {
             return match method.draft(&world, settings, job) {
-                Ok(made) => Found::Drafted(held(draft, made)),
+                Ok(made) => Found::Drafted(held(Arc::new(made), true)),
                 Err(error) => Found::Failed(error),
             };
         }
         match store.prepare(&key, *method, &world, settings, job) {
-            Ok(prepared) => Found::Made(held(key, prepared)),
+            Ok(prepared) => Found::Made(held(prepared, false)),
             Err(error) => Found::Failed(error),
         }
     }
@@ -256,8 +285,11 @@ impl Preparation {
             (self.job, self.held, self.state) = (None, None, Some(State::Needless));
             return;
         }
-        let (known, store, ctx) =
-            (self.held.as_ref().map(|held| (held.key.clone(), held.prepared.clone())), self.store.clone(), ctx.clone());
+        let known = self.held.as_ref().map(|held| {
+            let Held { origin, scene, is_draft, prepared, .. } = held;
+            Known { origin: origin.clone(), scene: scene.clone(), is_draft: *is_draft, prepared: prepared.clone() }
+        });
+        let (store, ctx) = (self.store.clone(), ctx.clone());
         self.is_whole = wanted == Wanted::Whole && subject.method.drafts();
         let world = self.world.clone();
         let label = format!("Preparing {}", subject.method.info().title);
@@ -285,6 +317,10 @@ impl Preparation {
                 State::Fresh
             }
             Found::Other => State::Stale,
+            Found::Aged(age) => {
+                self.full_at = Some(Instant::now() + REST);
+                State::Aged(age)
+            }
             Found::Drafted(held) => {
                 self.held = Some(held);
                 self.full_at = Some(Instant::now() + REST);
@@ -317,6 +353,9 @@ impl Preparation {
     /// How it stands.
     pub fn state(&self) -> State {
         match &self.job {
+            Some(job) if job.progress() == 0.0 && matches!(self.state, Some(State::Aged(_))) => {
+                self.state.unwrap_or(State::Missing)
+            }
             Some(job) => State::Working(job.progress()),
             None => self.state.unwrap_or(State::Missing),
         }

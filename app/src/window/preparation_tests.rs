@@ -127,6 +127,78 @@ fn a_draft_comes_first_and_the_whole_when_the_scene_rests() {
     assert!(count(&always) >= Some(3));
 }
 
+/// Reads lamps and materials, and stays in use when the latter change.
+#[derive(Debug)]
+struct Lasting;
+
+static LASTING: MethodInfo = MethodInfo {
+    id: MethodId("lasting"),
+    title: "Lasting",
+    summary: "",
+    params: &[],
+    coverage: Coverage::NONE,
+    reads: Reads { lights: true, materials: true, ..Reads::NOTHING },
+    revision: 1,
+};
+
+impl Method for Lasting {
+    fn info(&self) -> &'static MethodInfo {
+        &LASTING
+    }
+
+    fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        Lamps.prepare(world, settings, job)
+    }
+
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    fn draft(&self, _: &World, _: &Settings, _: &Handle) -> Result<Prepared, MethodError> {
+        Ok(Prepared::nothing().with("count", vec![77_u32]))
+    }
+
+    fn outlives(&self) -> Reads {
+        Reads { materials: true, ..Reads::NOTHING }
+    }
+
+    fn age(&self, then: &World, now: &World, _: &Settings) -> Option<f32> {
+        Some(now.scene().materials[0].roughness - then.scene().materials[0].roughness)
+    }
+}
+
+#[test]
+fn what_outlives_an_edit_stays_in_use_until_another_is_there() {
+    let ctx = egui::Context::default();
+    let mut scene = gallery::open("workbench").unwrap();
+    scene.materials[0].roughness = 0.25;
+    let (scene, mut preparation) = (Arc::new(scene), Preparation::default());
+    let until = |preparation: &mut Preparation, scene: &Arc<Scene>, is: &dyn Fn(State) -> bool| {
+        while !is(preparation.state()) {
+            preparation.follow(&Lasting, Settings::new(LASTING.params), scene, &ctx);
+            std::thread::yield_now();
+        }
+    };
+    let is_fresh = |state: State| state == State::Fresh;
+    until(&mut preparation, &scene, &is_fresh);
+    let first = preparation.prepared(&Lasting).unwrap();
+    let mut edited = Scene::clone(&scene);
+    edited.materials[0].roughness = 0.75;
+    let edited = Arc::new(edited);
+    until(&mut preparation, &edited, &|state| state == State::Aged(Some(0.5)));
+    // No draft takes its place.
+    assert!(Arc::ptr_eq(&first, &preparation.prepared(&Lasting).unwrap()));
+    until(&mut preparation, &edited, &is_fresh);
+    let second = preparation.prepared(&Lasting).unwrap();
+    assert!(!Arc::ptr_eq(&first, &second) && second.whole("count") == first.whole("count"));
+    // Lamps are another thing.
+    let mut brighter = Scene::clone(&edited);
+    brighter.lights[0].intensity *= 2.0;
+    let brighter = Arc::new(brighter);
+    until(&mut preparation, &brighter, &|state| state == State::Draft);
+    assert_eq!(preparation.prepared(&Lasting).unwrap().whole("count"), [77]);
+}
+
 #[test]
 fn what_is_quick_follows_every_edit_and_a_fault_is_told() {
     let mut preparation = Preparation { quick: Duration::MAX, ..Preparation::default() };

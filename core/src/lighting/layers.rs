@@ -97,7 +97,7 @@ impl Layers {
                 None => {
                     let Layer { method, settings, .. } = layer;
                     let key = key(*method, settings, world.scene());
-                    Arc::new(store.prepare(&key, *method, world, settings, job)?)
+                    store.prepare(&key, *method, world, settings, job)?
                 }
             };
             made.push((asked, prepared));

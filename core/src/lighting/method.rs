@@ -145,6 +145,18 @@ pub trait Method: Sync {
         self.prepare(world, settings, job)
     }
 
+    /// Parts of a scene whose edits leave what was prepared in use until another is there: what is edited is lit rightly at once, and only what
+    /// it sends to others is old. Edits of other parts begin with a [draft](Method::draft), where there are drafts.
+    fn outlives(&self) -> Reads {
+        Reads::NOTHING
+    }
+
+    /// How wrong what was prepared of a scene is for another that it [outlives](Method::outlives): root mean square of what changes of the light
+    /// that arrives at surfaces, over that of all of it. In a part of a second; `None` where nobody can tell.
+    fn age(&self, _then: &World, _now: &World, _settings: &Settings) -> Option<f32> {
+        None
+    }
+
     /// Where what was prepared fails for a scene, for people: each with what helps.
     fn warnings(&self, _scene: &Scene, _prepared: &Prepared, _settings: &Settings) -> Vec<String> {
         Vec::new()

@@ -2,6 +2,7 @@
 
 pub mod area;
 pub mod area_cube;
+pub mod bakes;
 pub mod classical;
 pub mod cube_map;
 pub mod drawing;
@@ -23,8 +24,13 @@ pub use method::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Met
 pub use prepared::{Prepared, Reads, Store};
 
 /// The methods that come with the program, in the order in which they are listed.
-pub static METHODS: Methods<'static> =
-    &[&classical::Classical, &impostor::Impostor, &area_cube::AreaCube, &reference::Reference];
+pub static METHODS: Methods<'static> = &[
+    &classical::Classical,
+    &impostor::Impostor,
+    &area_cube::AreaCube,
+    &radiance_map::RadianceMap,
+    &reference::Reference,
+];
 
 /// Methods that were added by [`register`].
 static ADDED: RwLock<Vec<&'static dyn Method>> = RwLock::new(Vec::new());

@@ -1,9 +1,12 @@
 //! What methods compute before their first frame, and where it is kept.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::Vec3;
 use half::f16;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::method::{Method, MethodError, MethodId, MethodInfo};
@@ -150,7 +153,7 @@ impl Prepared {
     }
 
     /// All arrays in one list, those of parts as `PART/NAME`.
-    fn flat(&self) -> Vec<(String, Array)> {
+    pub(super) fn flat(&self) -> Vec<(String, Array)> {
         let of_part = |(place, part): (usize, &Prepared)| {
             let named = move |(name, array)| (format!("{place}/{name}"), array);
             part.flat().into_iter().map(named).collect::<Vec<_>>()
@@ -160,7 +163,7 @@ impl Prepared {
     }
 
     /// The inverse of [`Prepared::flat`]; `None` where a part is missing before another.
-    fn of_flat(arrays: Vec<(String, Array)>) -> Option<Prepared> {
+    pub(super) fn of_flat(arrays: Vec<(String, Array)>) -> Option<Prepared> {
         let mut whole = Prepared::nothing();
         let mut of_parts: Vec<Vec<(String, Array)>> = Vec::new();
         for (name, array) in arrays {
@@ -195,26 +198,72 @@ impl Asked {
     }
 }
 
-/// Hash of all that a preparation depends on: the method with its revision, the settings that affect it, the parts of the
-/// scene that it reads.
-pub fn key(method: &dyn Method, settings_given: &Settings, scene: &Scene) -> String {
-    let MethodInfo { reads, revision, .. } = method.info();
-    let Asked { method: id, settings } = Asked::by(method, settings_given);
-    let parts: Vec<_> = {
+/// All that a preparation depends on, in words and hashes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Origin {
+    /// Id of the method.
+    pub method: String,
+    /// Its [`MethodInfo::revision`].
+    pub revision: u32,
+    /// The settings that affect it, as text.
+    pub settings: BTreeMap<String, String>,
+    /// Hashes of the parts of the scene that it reads, by [`Reads::parts`].
+    pub scene: BTreeMap<String, String>,
+}
+
+impl Origin {
+    /// That of a preparation by a method. Hashes the scene, see [`fingerprint::Fingerprint::new`].
+    pub fn of(method: &dyn Method, settings_given: &Settings, scene: &Scene) -> Origin {
         use fingerprint::{environment, geometry, lights, materials, probes, sky};
+        let MethodInfo { reads, revision, .. } = method.info();
+        let Asked { method: id, settings } = Asked::by(method, settings_given);
         let scene = &*method.seen(scene, settings_given);
         let digests: [fn(&Scene) -> Digest; 6] = [geometry, materials, lights, environment, sky, probes];
         let read = reads.parts().into_iter().zip(digests).filter(|((_, reads), _)| *reads);
-        read.map(|((name, _), digest)| (name, digest(scene).to_string())).collect()
-    };
-    let inputs = json!({ "method": id.0, "revision": revision, "settings": settings, "scene": parts });
-    blake3::hash(inputs.to_string().as_bytes()).to_hex().to_string()
+        Origin {
+            method: id.0.into(),
+            revision: *revision,
+            settings: settings.into_iter().map(|(key, text)| (key.into(), text.unwrap_or_default())).collect(),
+            scene: read.map(|((name, _), digest)| (name.into(), digest(scene).to_string())).collect(),
+        }
+    }
+
+    /// Hash of it.
+    pub fn key(&self) -> String {
+        // Maps of text are always written.
+        let text = serde_json::to_vec(self).unwrap_or_default();
+        blake3::hash(&text).to_hex().to_string()
+    }
+
+    /// Names of the parts of the scene in which another differs.
+    pub fn other_parts<'a>(&'a self, other: &'a Origin) -> Vec<&'a str> {
+        other_names(&self.scene, &other.scene)
+    }
+
+    /// Names of the settings in which another differs.
+    pub fn other_settings<'a>(&'a self, other: &'a Origin) -> Vec<&'a str> {
+        other_names(&self.settings, &other.settings)
+    }
+}
+
+/// Names whose texts differ, or are in one only.
+fn other_names<'a>(a: &'a BTreeMap<String, String>, b: &'a BTreeMap<String, String>) -> Vec<&'a str> {
+    let names: BTreeSet<&str> = a.keys().chain(b.keys()).map(String::as_str).collect();
+    names.into_iter().filter(|name| a.get(*name) != b.get(*name)).collect()
+}
+
+/// Hash of all that a preparation depends on: the method with its revision, the settings that affect it, the parts of the
+/// scene that it reads.
+pub fn key(method: &dyn Method, settings: &Settings, scene: &Scene) -> String {
+    Origin::of(method, settings, scene).key()
 }
 
 /// A folder of preparations, or none. Who has one does not wait twice for the same.
 #[derive(Clone, Debug, Default)]
 pub struct Store {
     folder: Option<PathBuf>,
+    /// What was given for a method, whatever the scene.
+    given: Option<(MethodId, Arc<Prepared>)>,
 }
 
 impl Store {
@@ -225,7 +274,13 @@ impl Store {
 
     /// In a folder, which is made when there is something to keep.
     pub fn within(folder: &Path) -> Store {
-        Store { folder: Some(folder.into()) }
+        Store { folder: Some(folder.into()), given: None }
+    }
+
+    /// The same, but a method has what is given here, also where that is of another state of the scene.
+    #[must_use]
+    pub fn giving(self, method: MethodId, prepared: Arc<Prepared>) -> Store {
+        Store { given: Some((method, prepared)), ..self }
     }
 
     /// What was kept under a key; damaged files count as none.
@@ -258,16 +313,19 @@ impl Store {
         world: &World,
         settings: &Settings,
         job: &Handle,
-    ) -> Result<Prepared, MethodError> {
+    ) -> Result<Arc<Prepared>, MethodError> {
+        if let Some((_, given)) = self.given.as_ref().filter(|(id, _)| *id == method.info().id) {
+            return Ok(given.clone());
+        }
         if let Some(prepared) = self.read(key) {
-            return Ok(prepared);
+            return Ok(Arc::new(prepared));
         }
         let prepared = method.prepare(world, settings, job)?;
         if !prepared.is_nothing() {
             // It is made again next time.
             let _ = self.keep(key, &prepared);
         }
-        Ok(prepared)
+        Ok(Arc::new(prepared))
     }
 
     fn path(&self, key: &str) -> Option<PathBuf> {

@@ -121,7 +121,7 @@ fn kept() {
     settings.set_value("gain", ParamValue::Number(3.0)).expect("in range");
     scene.materials[0].roughness = 0.77;
     let before = key(&Ambient, &settings, &scene);
-    assert_eq!(store.read(&before).as_ref(), Some(&first));
+    assert_eq!(store.read(&before).as_ref(), Some(&*first));
     settings.set_value("rows", ParamValue::Integer(5)).expect("in range");
     assert!(store.read(&key(&Ambient, &settings, &scene)).is_none());
     let other = prepare(&settings, &scene).expect("an environment");
@@ -136,7 +136,7 @@ fn kept() {
     settings.set_value("rows", ParamValue::Integer(64)).expect("in range");
     assert!(store.read(&before).is_none());
     assert_eq!(prepare(&settings, &scene).as_ref(), Ok(&first));
-    assert_eq!(store.read(&before), Some(first));
+    assert_eq!(store.read(&before).as_ref(), Some(&*first));
 
     job.cancel();
     scene.environment = None;

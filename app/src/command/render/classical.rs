@@ -1,7 +1,6 @@
 //! Pictures by methods that the graphics device draws.
 
 use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -13,7 +12,7 @@ use burnish_core::param::Settings;
 use burnish_render::{Gpu, Passes, Renderer, View};
 use glam::UVec2;
 
-use super::{Output, assign, store, tell};
+use super::{Output, Sources, assign, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure, printable};
 use crate::source::Opened;
@@ -39,7 +38,7 @@ impl ClassicalArgs {
 
 pub fn run(
     method: &'static dyn Method,
-    (args, cache): (&ClassicalArgs, Option<&Path>),
+    (args, sources): (&ClassicalArgs, Sources<'_>),
     (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
@@ -62,7 +61,8 @@ pub fn run(
     let scene = Arc::new(scene);
     let layers = Layers::of(method, settings.clone());
     let passes = Arc::new(Passes::new(&gpu));
-    let lighting = lighting_now(&layers, &scene, (&passes, &store(cache)), &Handle::default());
+    let store = sources.store(layers.first(), &scene, err)?;
+    let lighting = lighting_now(&layers, &scene, (&passes, &store), &Handle::default());
     let lighting = lighting.map_err(Failure::resources)?;
     if let Some(prepared) = lighting.prepared() {
         tell(err, &method.warnings(&scene, prepared, &settings))?;

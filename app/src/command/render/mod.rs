@@ -7,12 +7,16 @@ mod tracing;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use burnish_core::color::tone::ToneMap;
 use burnish_core::document::ViewEntry;
-use burnish_core::file::PictureFormat;
-use burnish_core::lighting::{self, Layers, Method, Store};
+use burnish_core::file::{FileError, PictureFormat};
+use burnish_core::lighting::bakes::Bake;
+use burnish_core::lighting::prepared::Origin;
+use burnish_core::lighting::{self, Layer, Layers, Method, Store};
 use burnish_core::param::{ParamSpec, Settings};
+use burnish_core::scene::Scene;
 use glam::UVec2;
 
 use classical::ClassicalArgs;
@@ -46,6 +50,9 @@ pub struct Args {
     /// Folder of what methods prepare [default: the user's cache]
     #[arg(long, value_name = "FOLDER")]
     cache: Option<PathBuf>,
+    /// What the method prepared, by `burnish bake`, also of another state of materials and lights
+    #[arg(long, value_name = "FILE")]
+    prepared: Option<PathBuf>,
     #[command(flatten, next_help_heading = "On the graphics device")]
     classical: ClassicalArgs,
     #[command(flatten, next_help_heading = "With --method reference")]
@@ -67,7 +74,7 @@ struct Output {
 }
 
 pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit, Failure> {
-    let Args { stage, output, method, processor, set, cache, classical, reference } = args;
+    let Args { stage, output, method, processor, set, cache, prepared, classical, reference } = args;
     output.check()?;
     // Where no method is given the document says it; else what can be refused is refused before the scene is read.
     let opened = match method {
@@ -102,12 +109,16 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         Some(opened) => (&stage, opened),
         None => (&stage, stage.open()?),
     };
+    if prepared.is_some() && id == REFERENCE {
+        return Err(Failure::usage(
+            "--prepared is for methods that prepare something, not the reference; leave it out",
+        ));
+    }
+    let sources = Sources { cache: cache.as_deref(), prepared: prepared.as_deref() };
     match id {
-        _ if on_device => {
-            classical::run(layers.first().method, (&classical, cache.as_deref()), scene, &set, &output, out, err)
-        }
+        _ if on_device => classical::run(layers.first().method, (&classical, sources), scene, &set, &output, out, err),
         REFERENCE => reference::run(&reference, scene, &set, &output, out, err),
-        _ => points::run(layers, (&reference, cache.as_deref()), scene, &set, &output, out, err),
+        _ => points::run(layers, (&reference, sources), scene, &set, &output, out, err),
     }
 }
 
@@ -146,7 +157,7 @@ impl Output {
     }
 }
 
-fn check_folder(option: &str, file: &Path) -> Result<(), Failure> {
+pub fn check_folder(option: &str, file: &Path) -> Result<(), Failure> {
     match file.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
         Some(folder) => {
             let (file, folder) = (file.display(), folder.display());
@@ -157,10 +168,30 @@ fn check_folder(option: &str, file: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Where preparations are kept: in a folder that was named, else in the user's cache.
-fn store(cache: Option<&Path>) -> Store {
-    let folder = cache.map(Path::to_path_buf).or_else(|| Some(Folders::of_user()?.prepared()));
-    folder.map_or_else(Store::none, |folder| Store::within(&folder))
+/// Where preparations come from.
+#[derive(Clone, Copy)]
+struct Sources<'a> {
+    /// A folder of them, see `--cache`.
+    cache: Option<&'a Path>,
+    /// One that was named, see `--prepared`.
+    prepared: Option<&'a Path>,
+}
+
+impl Sources<'_> {
+    /// In a folder that was named, else in the user's cache; with what was named for the method. Tells where that is of another state of
+    /// the scene, and refuses what cannot be used.
+    fn store(&self, layer: &Layer, scene: &Scene, err: &mut dyn Write) -> Result<Store, Failure> {
+        let Sources { cache, prepared } = self;
+        let folder = cache.map(Path::to_path_buf).or_else(|| Some(Folders::of_user()?.prepared()));
+        let store = folder.map_or_else(Store::none, |folder| Store::within(&folder));
+        let Some(path) = prepared else { return Ok(store) };
+        let Layer { method, settings, .. } = layer;
+        let refused = |error: FileError| Failure { exit: Exit::Input, messages: vec![error.to_string()] };
+        let bake = Bake::read(path).map_err(refused)?;
+        let notice = bake.fits(path, &Origin::of(*method, settings, scene)).map_err(refused)?;
+        tell(err, notice.as_slice())?;
+        Ok(store.giving(method.info().id, Arc::new(bake.prepared)))
+    }
 }
 
 /// Applies `--set`.
@@ -171,7 +202,7 @@ pub fn assign(settings: &mut Settings, list: &[(String, String)]) -> Result<(), 
     Ok(())
 }
 
-fn tell(err: &mut dyn Write, notices: &[String]) -> Result<(), Failure> {
+pub fn tell(err: &mut dyn Write, notices: &[String]) -> Result<(), Failure> {
     for notice in notices {
         writeln!(err, "burnish: notice: {}", printable(notice))?;
     }

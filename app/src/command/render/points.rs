@@ -1,7 +1,6 @@
 //! Pictures by a method that draws point by point on the processor.
 
 use std::io::Write;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -16,7 +15,7 @@ use burnish_core::reference::{Film, Options, Pass, View, World};
 use glam::UVec2;
 
 use super::reference::ReferenceArgs;
-use super::{Output, assign, store, tell};
+use super::{Output, Sources, assign, tell};
 use crate::command::stage::{Forms, StageArgs, Staged};
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
@@ -27,7 +26,7 @@ const SAMPLES: u32 = 16;
 
 pub fn run(
     layers: Layers,
-    (args, cache): (&ReferenceArgs, Option<&Path>),
+    (args, sources): (&ReferenceArgs, Sources<'_>),
     (stage, opened): (&StageArgs, Opened),
     set: &[(String, String)],
     output: &Output,
@@ -49,7 +48,7 @@ pub fn run(
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let job = Handle::default();
     let view = View { camera, size, seed };
-    let store = store(cache);
+    let store = sources.store(layers.first(), &scene, err)?;
     let pool = args.pool()?;
     let (mut film, samples) = (Film::new(size), samples.unwrap_or(SAMPLES));
     let cancel = || {

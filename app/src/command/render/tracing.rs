@@ -1,6 +1,6 @@
 //! Paths in the background: passes to a goal, a line of progress, a checkpoint now and then.
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -13,7 +13,8 @@ use burnish_core::reference::checkpoint::{self, Key};
 use burnish_core::reference::{Control, End, Film, Goal, Pacing, Pass, Step, View, World, trace};
 use rayon::ThreadPool;
 
-use crate::failure::{Failure, printable};
+use crate::command::line::Line;
+use crate::failure::Failure;
 use crate::interrupt;
 
 /// How often signals and progress are looked at.
@@ -168,32 +169,4 @@ fn describe(seen: &Mutex<Seen>, control: &Control, start: Instant) -> String {
         text += &format!(", {}:{:02} left", left / 60, left % 60);
     }
     text + &format!(", {:.2} Mrays/s", control.rays() as f64 / elapsed.max(1e-9) / 1e6)
-}
-
-/// The last line of a terminal, written over and over; nothing elsewhere.
-struct Line<'a> {
-    err: &'a mut dyn Write,
-    is_terminal: bool,
-}
-
-impl Line<'_> {
-    fn new(err: &mut dyn Write) -> Line<'_> {
-        Line { err, is_terminal: std::io::stderr().is_terminal() }
-    }
-
-    fn show(&mut self, text: impl FnOnce() -> String) {
-        if self.is_terminal {
-            // Progress that cannot be shown is no reason to stop.
-            let _ = write!(self.err, "\r\x1b[K{}", text()).and_then(|()| self.err.flush());
-        }
-    }
-
-    fn clear(&mut self) {
-        self.show(String::new);
-    }
-
-    fn tell(&mut self, notice: &str) {
-        self.clear();
-        let _ = writeln!(self.err, "burnish: notice: {}", printable(notice));
-    }
 }

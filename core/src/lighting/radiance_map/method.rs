@@ -6,9 +6,11 @@ use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use glam::{UVec3, Vec2, Vec3};
 use half::f16;
 
-use super::bake::{Asked, GROUPS, bake};
+use super::bake::{Asked, GROUPS, age};
 use super::directions::{Directions, FEWEST, Spread};
 use super::near::{self, Grid, Near, SET};
+use super::run::run;
+use super::shards;
 use crate::job::Handle;
 use crate::lighting::classical;
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
@@ -150,7 +152,7 @@ static INFO: MethodInfo = MethodInfo {
         emission: Cover::None,
     },
     reads: Reads::ALL,
-    revision: 1,
+    revision: 2,
 };
 
 impl Method for RadianceMap {
@@ -159,13 +161,42 @@ impl Method for RadianceMap {
     }
 
     fn prepare(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
-        let [points, paths, seed] = [POINTS, PATHS, SEED].map(|spec| whole(settings, &spec));
-        bake(world, &asked_directions(settings), Asked { points, paths, seed }, job)
+        let shard = run(world, settings, [1, 1], None, |_| (), job)?;
+        let bake = shards::whole(&shard.about, &shard.blocks).map_err(MethodError::Unfit)?;
+        Ok(bake.prepared)
+    }
+
+    fn drafts(&self) -> bool {
+        true
+    }
+
+    /// With places and paths for a part of a second.
+    fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+        let coarse = |spec: &ParamSpec, most: u32| whole(settings, spec).min(most).to_string();
+        let mut draft = settings.clone();
+        for (spec, most) in [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1)] {
+            draft.set(spec.key, &coarse(spec, most)).map_err(|e| MethodError::Unfit(e.to_string()))?;
+        }
+        self.prepare(world, &draft, job)
+    }
+
+    fn outlives(&self) -> Reads {
+        Reads { materials: true, ..Reads::NOTHING }
+    }
+
+    fn age(&self, then: &World, now: &World, settings: &Settings) -> Option<f32> {
+        age(then, now, &directions(Spread::Fibonacci, DRAFT_DIRECTIONS), asked(settings).seed)
     }
 
     fn points(&self) -> Option<&dyn ShadePoint> {
         Some(self)
     }
+}
+
+/// What is baked, from settings made of [`PARAMS`].
+pub(super) fn asked(settings: &Settings) -> Asked {
+    let [points, paths, seed] = [POINTS, PATHS, SEED].map(|spec| whole(settings, &spec));
+    Asked { points, paths, seed }
 }
 
 fn whole(settings: &Settings, spec: &ParamSpec) -> u32 {
@@ -198,14 +229,21 @@ fn directions(spread: Spread, count: u32) -> Arc<Directions> {
     MADE.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_insert(made).clone()
 }
 
+/// Those of the texts of settings; `None` where these are not understood.
+pub(super) fn directions_of_texts(spread: &str, count: &str) -> Option<Arc<Directions>> {
+    let spread = Spread::IDS.iter().position(|id| *id == spread)?;
+    let count: u32 = count.parse().ok()?;
+    DIRECTIONS.accepts(ParamValue::Integer(count.into())).then(|| directions(Spread::ALL[spread], count))
+}
+
 /// Those of settings made of [`PARAMS`].
-fn asked_directions(settings: &Settings) -> Arc<Directions> {
+pub(super) fn asked_directions(settings: &Settings) -> Arc<Directions> {
     let spread = if is_choice(settings, &SPREAD, 1) { Spread::Halton } else { Spread::Fibonacci };
     directions(spread, whole(settings, &DIRECTIONS))
 }
 
 /// Those of a map; `None` where there is no map.
-fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
+pub(super) fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
     let [spread, count] = *prepared.whole("directions") else { return None };
     Some(directions(*Spread::ALL.get(spread as usize)?, count))
 }
@@ -284,6 +322,10 @@ impl<'a> Map<'a> {
         if weights > 0.0 { sum / weights } else { light[self.directions.nearest(direction)] }
     }
 }
+
+/// Places and directions of a draft, at most.
+const DRAFT_POINTS: u32 = 2000;
+const DRAFT_DIRECTIONS: u32 = 32;
 
 /// Bounces between smooth surfaces that are traced.
 const MOST_MIRRORS: u32 = 4;

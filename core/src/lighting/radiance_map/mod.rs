@@ -3,14 +3,20 @@
 //! Neither BRDF nor cosine is baked in: materials are edited at full speed under light that went everywhere. What an edited surface sends to others is
 //! that of the bake. `README.md` has the formulas and figures.
 
+mod average;
 mod bake;
 mod directions;
 mod method;
 mod near;
 mod points;
+mod run;
+mod shards;
 
-pub use bake::{Asked, GROUPS, bake};
+pub use average::average;
+pub use bake::{Asked, BLOCK, Baker, Block, GROUPS, assembled, noise};
 pub use directions::{Directions, Drawn, FEWEST, Spread};
 pub use method::{ID, PARAMS, RadianceMap};
 pub use near::{AGREEMENT, Grid, Near, SET, weights};
 pub use points::{Place, Surfaces};
+pub use run::run;
+pub use shards::{KIND as SHARD_KIND, Shard, ShardAbout, merge, whole};

@@ -73,13 +73,21 @@ fn preparation_ui(ui: &mut egui::Ui, preparation: &mut Preparation, is_named: bo
         State::Draft => {
             ("draft".into(), "Coarse, of this very scene; the whole is made when nothing changes for a moment.")
         }
+        State::Aged(age) => {
+            let size = age.map_or_else(String::new, |age| format!(", light off by {:.1} %", 100.0 * age));
+            (
+                format!("stale{size}"),
+                "What was edited is lit rightly; what it sends to others is old until the whole is made anew, when nothing \
+                 changes for a moment.",
+            )
+        }
         State::Stale => {
             ("stale".into(), "The scene or a setting changed since; what was prepared before stays in use.")
         }
     };
     ui.horizontal(|ui| {
         let color = match state {
-            State::Stale | State::Missing => ui.visuals().warn_fg_color,
+            State::Stale | State::Aged(_) | State::Missing => ui.visuals().warn_fg_color,
             _ => ui.visuals().weak_text_color(),
         };
         if let Some(method) = preparation.method().filter(|_| is_named) {

@@ -67,6 +67,33 @@ fn a_killed_picture_goes_on_from_its_checkpoint_with_the_same_bytes() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+fn bake(folder: &Path, out: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_burnish"));
+    let settings = ["--set", "points=12000", "--set", "directions=32", "--set", "paths=4"];
+    command.current_dir(folder).args(["bake", "gallery:room", "--out", out]).args(settings);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+#[test]
+fn a_killed_bake_goes_on_with_the_same_bytes() {
+    let folder = folder("bake");
+    let mut child = bake(&folder, "x.bake").spawn().unwrap();
+    while !folder.join("x.bake.part").exists() {
+        assert_eq!(child.try_wait().unwrap(), None, "it ended before its part was there");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    assert_eq!(child.wait().unwrap().code(), None, "killed");
+    assert!(!folder.join("x.bake").exists());
+    let told = succeeded(bake(&folder, "x.bake"));
+    assert!(String::from_utf8_lossy(&told.stderr).contains("x.bake.part: going on"));
+    assert!(!folder.join("x.bake.part").exists());
+    succeeded(bake(&folder, "whole.bake"));
+    assert!(fs::read(folder.join("x.bake")).unwrap() == fs::read(folder.join("whole.bake")).unwrap());
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn a_signal_ends_a_picture_in_order_with_exit_code_5() {
     let folder = folder("signal");

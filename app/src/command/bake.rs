@@ -2,11 +2,10 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use burnish_core::file::FileError;
 use burnish_core::job::Handle;
 use burnish_core::lighting::bakes::{About, Bake};
 use burnish_core::lighting::classical::form_choice;
@@ -144,6 +143,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let part = part_of(&file);
     let begun = if id.0 == radiance_map::ID { begun(&part, err)? } else { None };
+    let unsaved = Mutex::new(None);
     let mut line = Line::new(err);
     let mut first = None;
     let look = || {
@@ -156,7 +156,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         pool.install(|| {
             let world = World::new(&Arc::new(scene), Options::new(&settings));
             if id.0 == radiance_map::ID {
-                return baked(&world, &settings, shard, begun, &part, &job).map(Made::Shard);
+                return baked(&world, &settings, shard, begun, (&part, &unsaved), &job).map(Made::Shard);
             }
             let prepared = method.prepare(&world, &settings, &job)?;
             let origin = Origin::of(method, &settings, world.scene());
@@ -164,6 +164,9 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
         })
     });
     line.clear();
+    if let Some(error) = unsaved.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        line.tell(&format!("{error}; the bake went on without"));
+    }
     let secs = start.elapsed().as_secs_f64();
     let report = match made.map_err(|error| failure(method, &error, &part))? {
         Made::Shard(whole) if shard.is_none() => {
@@ -231,17 +234,20 @@ fn baked(
     settings: &Settings,
     shard: Option<[u32; 2]>,
     begun: Option<Shard>,
-    part: &Path,
+    (part, unsaved): (&Path, &Mutex<Option<String>>),
     job: &Handle,
 ) -> Result<Shard, MethodError> {
-    let mut due = Instant::now() + INTERVAL;
+    // The first blocks show whether it can be written.
+    let mut due = Instant::now();
     let keep = |shard: &Shard| {
         if Instant::now() < due && !job.is_cancelled() {
             return;
         }
         let start = Instant::now();
         // The bake is worth more than what is kept of it: it goes on.
-        let _: Result<(), FileError> = shard.write(part);
+        if let Err(error) = shard.write(part) {
+            *unsaved.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
+        }
         due = Instant::now() + INTERVAL.max(SHARE * start.elapsed());
     };
     radiance_map::run(world, settings, shard.unwrap_or([1, 1]), begun, keep, job)

@@ -337,7 +337,10 @@ mod tests {
     fn methods_are_found_by_name_and_unknown_ones_told_what_there_is() {
         assert_eq!(find(METHODS, "classical").unwrap().info().title, "Classical");
         let error = find(METHODS, "radiosity").unwrap_err().to_string();
-        assert!(error.contains("radiosity") && error.contains("classical, impostor, area-cube, reference"), "{error}");
+        assert!(
+            error.contains("radiosity") && error.contains("classical, impostor, area-cube, radiance-map, reference"),
+            "{error}"
+        );
         let mut ids: Vec<MethodId> = METHODS.iter().map(|m| m.info().id).collect();
         ids.sort_unstable();
         ids.dedup();

@@ -101,7 +101,7 @@ pub fn what_cannot_be_measured_is_told() {
     let refused = |args: &[&str], words: &[&str]| {
         burnish(&[&["chart"], args].concat()).failed(USAGE, words);
     };
-    refused(&["--methods", "radiosity"], &["radiosity", "classical, impostor, area-cube, reference"]);
+    refused(&["--methods", "radiosity"], &["radiosity", "classical, impostor, area-cube, radiance-map, reference"]);
     refused(&["--sweep", "classical.samples=2000"], &["classical.samples=2000", "0 to 1024"]);
     refused(&["--sweep", "samples"], &["[METHOD.]key=a,b,c"]);
     refused(&["--sweep", "smples=1"], &["smples", "samples"]);

@@ -1,5 +1,6 @@
 //! The command line, in process: exit codes, one-line messages, JSON, pictures.
 
+mod baking;
 mod chart;
 mod comparing;
 mod documents;
@@ -70,6 +71,8 @@ fn free_of_the_gpu() -> Vec<Trial> {
         ),
         trial("a chart has each scene under each preset of lights", &[Need::Gpu], chart::presets_replace_the_lights),
         trial("what cannot be measured is told", &[], chart::what_cannot_be_measured_is_told),
+        trial("shards are merged to the bytes of a whole", &[], baking::shards_are_merged_to_the_bytes_of_a_whole),
+        trial("a picture is lit by what was baked", &[], baking::a_picture_is_lit_by_what_was_baked),
         trial("the page of methods is that of the program", &[], the_page_of_methods),
         trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),
         trial(

@@ -220,7 +220,7 @@ pub fn options_of_the_other_method_are_refused() {
     refused(
         &["render", "--method", "magic", "--out", "x.exr"],
         &[],
-        &["magic", "classical, impostor, area-cube, reference"],
+        &["magic", "classical, impostor, area-cube, radiance-map, reference"],
     );
     let help = burnish(&["render", "--help"]).succeeded().out;
     for words in ["--checkpoint", "--error", "With --method reference", "bounces: a whole number", "default: 64"] {

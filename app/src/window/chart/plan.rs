@@ -119,7 +119,7 @@ mod tests {
         let labels: Vec<String> = plan.candidates().unwrap().iter().map(Candidate::label).collect();
         assert!(labels.contains(&"classical samples=4".into()) && labels.contains(&"reference samples=16".into()));
         // Few and many for each: 5 of those that sample lobes, 3 of paths; one of those without samples.
-        assert_eq!(labels.len(), 14);
+        assert_eq!(labels.len(), 15);
     }
 
     #[test]

@@ -29,7 +29,7 @@ const POINTS: ParamSpec = ParamSpec {
     key: "points",
     label: "Points",
     unit: "",
-    kind: ParamKind::Integer { min: 64, max: 4_000_000, default: 30_000 },
+    kind: ParamKind::Integer { min: 64, max: 4_000_000, default: 10_000 },
     help: "Places on surfaces of which light is kept, spread by area.",
     affects: Affects::Prepare,
 };
@@ -47,7 +47,7 @@ const PATHS: ParamSpec = ParamSpec {
     key: "paths",
     label: "Paths",
     unit: "per direction",
-    kind: ParamKind::Integer { min: 1, max: 65_536, default: 16 },
+    kind: ParamKind::Integer { min: 1, max: 65_536, default: 8 },
     help: "Paths that are traced for each direction of each point.",
     affects: Affects::Prepare,
 };

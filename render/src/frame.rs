@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use burnish_core::lighting::classical::FrameSettings;
 use burnish_core::lighting::impostor::Show;
+use burnish_core::lighting::radiance_map::MetSurface;
 use burnish_core::math::sampling;
 use burnish_core::reference::Contribution;
 use burnish_core::scene::{Bounds, Camera, Projection};
@@ -66,6 +67,8 @@ pub(crate) struct Encoding {
     samples: u32,
     /// Group 3 of each probe, where they add to the picture.
     looks: Vec<wgpu::BindGroup>,
+    /// Group 3 of the baked map, where it adds to the picture, and whether smooth surfaces send rays.
+    map: Option<(wgpu::BindGroup, bool)>,
     /// Errors of searches are shown.
     errors: bool,
     /// Lamps throw shadows on a ground that is seen.
@@ -95,7 +98,14 @@ impl Encoding {
         let looks = if probed { (0..resident.probe_groups.len()).map(group).collect() } else { Vec::new() };
         // Where a tree does not fit the device nothing is shown of errors.
         let errors = errors && trees.len() == resident.probe_groups.len();
+        let map = resident.map.as_ref().filter(|_| settings.contribution == Contribution::All).map(|mapped| {
+            let scene = &resident.scene;
+            let mut used = scene.instances.iter().filter(|instance| instance.visible);
+            let traced = used.any(|instance| MetSurface::may_be_smooth(scene, instance.material, look.map.below));
+            (passes.radiance_map.look(gpu, &mapped.map.data(&look.map)), traced)
+        });
         Encoding {
+            map,
             scene_group,
             viewer: data.viewer,
             clip_from_world: data.clip_from_world,
@@ -132,8 +142,13 @@ impl Encoding {
             let groups = with(&targets.catcher_group);
             passes.catcher.encode(encoder, &targets.gbuffer, groups, areas, rows.clone());
         }
-        let variant = Variant { sampled: self.samples > 0, areas, probed: !self.looks.is_empty() };
+        let variant =
+            Variant { sampled: self.samples > 0, areas, probed: !self.looks.is_empty(), mapped: self.map.is_some() };
         passes.classical.encode(encoder, &targets.frame, with(&targets.gbuffer_group), variant, rows.clone());
+        if let (Some((look, traced)), Some(mapped)) = (&self.map, &resident.map) {
+            let groups = [&self.scene_group, &targets.gbuffer_group, &mapped.group, look];
+            passes.radiance_map.encode(encoder, &targets.frame, groups, *traced, rows.clone());
+        }
         let drawn = match (resident.lighting.is_area_cube(), self.errors) {
             (true, _) => Drawn::AreaCube,
             (false, true) => Drawn::Errors,

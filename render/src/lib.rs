@@ -16,6 +16,7 @@ pub mod pass;
 mod passes;
 mod plate;
 mod probes;
+mod radiance_map;
 mod raster;
 pub mod readback;
 pub mod renderer;
@@ -40,5 +41,5 @@ pub use viewport::{Drawn, Frame, PendingPicture, Picked, Viewport};
 
 /// The device has a pass for this lighting method; without one a method draws on the processor, if it can.
 pub fn draws(method: burnish_core::lighting::MethodId) -> bool {
-    [classical::ID, impostor::ID, area_cube::ID].contains(&method.0)
+    [classical::ID, impostor::ID, area_cube::ID, burnish_core::lighting::radiance_map::ID].contains(&method.0)
 }

@@ -13,6 +13,7 @@ use crate::pass::environment::{EnvironmentPass, background_layout};
 use crate::pass::forward::ForwardPass;
 use crate::pass::gbuffer::GBufferPass;
 use crate::pass::probe::ProbePass;
+use crate::pass::radiance_map::RadianceMapPass;
 use crate::pass::scene_layout;
 use crate::pass::shadow::ShadowPass;
 use crate::scene::material_layout;
@@ -29,6 +30,7 @@ pub struct Passes {
     pub(crate) gbuffer: GBufferPass,
     pub(crate) classical: ClassicalPass,
     pub(crate) probe: ProbePass,
+    pub(crate) radiance_map: RadianceMapPass,
     pub(crate) catcher: CatcherPass,
     pub(crate) forward: ForwardPass,
     pub(crate) accumulate: AccumulatePass,
@@ -53,6 +55,7 @@ impl Passes {
             shadow: ShadowPass::new(gpu, &mesh),
             gbuffer: GBufferPass::new(gpu, &mesh),
             probe: ProbePass::new(gpu, &scene_layout, classical.gbuffer_layout(), format),
+            radiance_map: RadianceMapPass::new(gpu, &scene_layout, classical.gbuffer_layout(), format),
             classical,
             catcher: CatcherPass::new(gpu, &scene_layout, &light_layout, &background_layout),
             forward: ForwardPass::new(gpu, &lit, format),
@@ -70,9 +73,9 @@ impl Passes {
         let passes = self.clone();
         let compile = move || {
             AlbedoTable::get();
-            passes.classical.pipeline(Variant { sampled: false, areas: false, probed: false });
+            passes.classical.pipeline(Variant { sampled: false, ..Variant::default() });
             passes.gbuffer.warm_up();
-            passes.classical.pipeline(Variant { sampled: true, areas: false, probed: false });
+            passes.classical.pipeline(Variant { sampled: true, ..Variant::default() });
         };
         // Where there is no thread to be had it is compiled when it is needed.
         let _ = std::thread::Builder::new().name("pipelines".into()).spawn(compile);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::probe::{self, Cells, Probe, Probes};
-use burnish_core::lighting::{MethodId, Prepared, area_cube, impostor};
+use burnish_core::lighting::{MethodId, Prepared, area_cube, impostor, radiance_map};
 use burnish_core::param::Settings;
 
 use crate::device::Gpu;
@@ -16,15 +16,25 @@ use crate::pass::environment::EnvironmentMaps;
 #[derive(Clone, Debug, Default)]
 pub struct Lighting {
     prepared: Option<Arc<Prepared>>,
-    is_area_cube: bool,
+    by: By,
+}
+
+/// How what was prepared is drawn with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum By {
+    #[default]
+    Impostor,
+    AreaCube,
+    RadianceMap,
 }
 
 impl Lighting {
     /// A method with its preparation.
     pub fn new(method: MethodId, prepared: Option<Arc<Prepared>>) -> Lighting {
-        let is_area_cube = method.0 == area_cube::ID;
-        let knows = is_area_cube || method.0 == impostor::ID;
-        Lighting { prepared: prepared.filter(|prepared| knows && !prepared.is_nothing()), is_area_cube }
+        let known = [(impostor::ID, By::Impostor), (area_cube::ID, By::AreaCube), (radiance_map::ID, By::RadianceMap)];
+        let by = known.into_iter().find(|(id, _)| *id == method.0).map(|(_, by)| by);
+        let prepared = prepared.filter(|prepared| by.is_some() && !prepared.is_nothing());
+        Lighting { prepared, by: by.unwrap_or_default() }
     }
 
     /// It takes the place of the environment somewhere.
@@ -37,9 +47,19 @@ impl Lighting {
         self.prepared.as_ref()
     }
 
+    /// The probes of what was prepared.
+    pub(crate) fn probes(&self) -> Option<&Arc<Prepared>> {
+        self.prepared.as_ref().filter(|_| self.by != By::RadianceMap)
+    }
+
+    /// The radiance map of what was prepared.
+    pub(crate) fn map(&self) -> Option<&Arc<Prepared>> {
+        self.prepared.as_ref().filter(|_| self.by == By::RadianceMap)
+    }
+
     /// Bits of the probes that serve an instance.
     pub(crate) fn serving(&self, instance: u32) -> u32 {
-        let Some(prepared) = &self.prepared else { return 0 };
+        let Some(prepared) = self.probes() else { return 0 };
         let probes = Probes::of(prepared);
         let serving = (0..probes.len().min(probe::MOST)).filter(|index| probes.serves(*index, instance));
         serving.map(|index| 1 << index).sum()
@@ -47,12 +67,12 @@ impl Lighting {
 
     /// The method is `area-cube`.
     pub(crate) fn is_area_cube(&self) -> bool {
-        self.is_area_cube
+        self.by == By::AreaCube
     }
 
     pub(crate) fn is_like(&self, other: &Lighting) -> bool {
         match (&self.prepared, &other.prepared) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b) && self.is_area_cube == other.is_area_cube,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) && self.by == other.by,
             (a, b) => a.is_none() && b.is_none(),
         }
     }
@@ -66,6 +86,8 @@ pub(crate) struct ProbeLook {
     /// Of the method `area-cube`: texels along an edge, and what is asked of them.
     pub edge: u32,
     pub asked: area_cube::Asked,
+    /// Of the method `radiance-map`.
+    pub map: radiance_map::Look,
 }
 
 impl ProbeLook {
@@ -75,6 +97,7 @@ impl ProbeLook {
             show: impostor::show(settings),
             edge: area_cube::edge(settings),
             asked: area_cube::asked(settings),
+            map: radiance_map::Look::new(settings),
         }
     }
 }

@@ -18,6 +18,7 @@ use crate::pass::environment::{BackgroundMap, EnvironmentMaps};
 use crate::pass::shadow::Shadows;
 use crate::passes::Passes;
 use crate::probes::{GpuProbes, Lighting, places};
+use crate::radiance_map::{GpuMap, met};
 use crate::scene::{GpuScene, MaterialGroups};
 use crate::tables::{TableCache, Tables};
 use crate::trace::TraceTree;
@@ -60,6 +61,8 @@ pub(crate) struct Resident {
     pub lighting: Lighting,
     /// Bind group 2 of each probe.
     pub probe_groups: Vec<wgpu::BindGroup>,
+    /// The baked map that lights it, and bind group 2 of that.
+    pub map: Option<Mapped>,
     probes: Option<Arc<GpuProbes>>,
     /// Box around what each probe serves.
     pub served: Vec<Bounds>,
@@ -67,6 +70,14 @@ pub(crate) struct Resident {
     trees: OnceLock<Vec<TraceTree>>,
     bounds: Bounds,
     tables: Arc<TableBuffer>,
+}
+
+/// A baked map in a scene.
+pub(crate) struct Mapped {
+    pub map: Arc<GpuMap>,
+    pub group: wgpu::BindGroup,
+    /// The triangles that rays of smooth surfaces meet.
+    tree: Arc<TraceTree>,
 }
 
 struct TableBuffer {
@@ -118,7 +129,7 @@ impl Loader {
                 floats: tables.floats,
             }),
         };
-        let probes = match (lighting.prepared(), before.and_then(|before| before.probes.as_ref())) {
+        let probes = match (lighting.probes(), before.and_then(|before| before.probes.as_ref())) {
             (Some(prepared), Some(before)) if Arc::ptr_eq(prepared, &before.prepared) => Some(before.clone()),
             (Some(prepared), _) => Some(Arc::new(GpuProbes::new(gpu, prepared)?)),
             (None, _) => None,
@@ -132,11 +143,18 @@ impl Loader {
             Some(before) if before.lighting.is_like(lighting) && same_places(&before.scene, scene) => {
                 before.served.clone()
             }
-            _ => lighting.prepared().map_or_else(Vec::new, |prepared| served(scene, prepared)),
+            _ => lighting.probes().map_or_else(Vec::new, |prepared| served(scene, prepared)),
         };
         let each = probes.iter().flat_map(|probes| &probes.each);
         let group = |probe| passes.probe.group(gpu, probe, &places, &tables.buffer);
         let probe_groups = each.map(group).collect();
+        let map = match lighting.map() {
+            None => None,
+            Some(prepared) => {
+                let old = before.and_then(|before| Some((before.map.as_ref()?, &*before.scene)));
+                Some(mapped(&passes, scene, prepared, old, (&maps, &shadows, &tables.buffer))?)
+            }
+        };
         let seen = before.map(|before| &before.background);
         let background = BackgroundMap::new(gpu, &passes.background_layout, scene, seen)?;
         gpu.check()?;
@@ -151,6 +169,7 @@ impl Loader {
             lights,
             lighting: lighting.clone(),
             probe_groups,
+            map,
             probes,
             served,
             trees: OnceLock::new(),
@@ -169,7 +188,7 @@ impl Resident {
     /// The triangles around each probe, without what it serves; none where they do not fit the device.
     pub fn trees(&self, passes: &Passes) -> &[TraceTree] {
         self.trees.get_or_init(|| {
-            let Some(prepared) = self.lighting.prepared() else { return Vec::new() };
+            let Some(prepared) = self.lighting.probes() else { return Vec::new() };
             let tree = |maps: &Prepared| {
                 let around = probe::surroundings(&self.scene, maps.whole("served"));
                 TraceTree::new(&passes.gpu, &Accel::new(&around))
@@ -182,6 +201,28 @@ impl Resident {
     pub fn is_of(&self, scene: &Arc<Scene>, masking: Masking, lighting: &Lighting) -> bool {
         Arc::ptr_eq(&self.scene, scene) && self.masking == masking && self.lighting.is_like(lighting)
     }
+}
+
+/// A map in a scene; takes over from before what is still right.
+fn mapped(
+    passes: &Passes,
+    scene: &Scene,
+    prepared: &Arc<Prepared>,
+    before: Option<(&Mapped, &Scene)>,
+    around: (&EnvironmentMaps, &Shadows, &wgpu::Buffer),
+) -> Result<Mapped, RenderError> {
+    let gpu = &passes.gpu;
+    let map = match before {
+        Some((old, _)) if Arc::ptr_eq(&old.map.prepared, prepared) => old.map.clone(),
+        _ => Arc::new(GpuMap::new(gpu, prepared)?),
+    };
+    let visible = |scene: &Scene| scene.instances.iter().map(|instance| instance.visible).collect::<Vec<_>>();
+    let tree = match before {
+        Some((old, of)) if same_places(of, scene) && visible(of) == visible(scene) => old.tree.clone(),
+        _ => Arc::new(TraceTree::new(gpu, &Accel::new(&probe::surroundings(scene, &[])))?),
+    };
+    let group = passes.radiance_map.group(gpu, &map, &met(gpu, scene), tree.buffer(), around);
+    Ok(Mapped { map, group, tree })
 }
 
 /// Boxes around what probes serve.

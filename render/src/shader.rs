@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe, radiance_map};
 use burnish_core::measure::view;
 use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
@@ -22,6 +22,7 @@ const TEXEL: &str = include_str!("pass/gbuffer/texel.wgsl");
 const RESOLVE: &str = include_str!("pass/gbuffer/resolve.wgsl");
 const SURFACE: &str = include_str!("pass/classical/surface.wgsl");
 const SHADE: &str = include_str!("pass/classical/shade.wgsl");
+const LAMP: &str = include_str!("pass/classical/lamp.wgsl");
 const LAMPS: &str = include_str!("pass/classical/lamps.wgsl");
 const SOFT: &str = include_str!("pass/classical/soft.wgsl");
 const RAYS: &str = include_str!("pass/classical/rays.wgsl");
@@ -59,6 +60,7 @@ pub static CLASSICAL: Shader = Shader {
         SCENE_BINDINGS,
         SURFACE,
         SHADE,
+        LAMP,
         LAMPS,
         SOFT,
         BACKGROUND,
@@ -119,6 +121,24 @@ pub static IMPOSTOR_ERROR: Shader = Shader {
     ],
 };
 
+/// Adds the light of a baked map.
+pub static RADIANCE_MAP: Shader = Shader {
+    name: "radiance map",
+    leaves: &[&classical::WGSL, &radiance_map::WGSL],
+    files: &[
+        TYPES,
+        TEXEL,
+        SCENE_BINDINGS,
+        SURFACE,
+        GBUFFER_BINDINGS,
+        RAYS,
+        LAMP,
+        include_str!("trace/numbers.wgsl"),
+        include_str!("trace/trace.wgsl"),
+        include_str!("pass/radiance_map/radiance_map.wgsl"),
+    ],
+};
+
 /// Shadows on the ground of the background.
 pub static CATCHER: Shader = Shader {
     name: "catcher",
@@ -129,6 +149,7 @@ pub static CATCHER: Shader = Shader {
         SCENE_BINDINGS,
         SURFACE,
         SHADE,
+        LAMP,
         LAMPS,
         SOFT,
         BACKGROUND,
@@ -141,7 +162,7 @@ pub static CATCHER: Shader = Shader {
 pub static FORWARD: Shader = Shader {
     name: "forward",
     leaves: &[&classical::WGSL, &area::WGSL, &micro_normal::WGSL, &probe::WGSL],
-    files: &[TYPES, TEXEL, RESOLVE, SURFACE, SHADE, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
+    files: &[TYPES, TEXEL, RESOLVE, SURFACE, SHADE, LAMP, LAMPS, SOFT, include_str!("pass/forward/forward.wgsl")],
 };
 
 /// Adds a frame to the sum.
@@ -181,6 +202,7 @@ pub static ALL: &[&Shader] = &[
     &IMPOSTOR,
     &IMPOSTOR_ERROR,
     &AREA_CUBE,
+    &RADIANCE_MAP,
     &CATCHER,
     &FORWARD,
     &ACCUMULATE,

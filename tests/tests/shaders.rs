@@ -5,7 +5,7 @@ use std::f32::consts;
 
 use burnish_core::color::tone::{self, ToneMap};
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe, radiance_map};
 use burnish_core::measure::view;
 use burnish_core::surface::blinn_phong::{self, Variant};
 use burnish_core::surface::ggx::{self, Masking, albedo};
@@ -229,6 +229,12 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_SHOW_ERROR", impostor::SHOW_ERROR.into()),
             ("IMPOSTOR_MOST_LOOKUPS", impostor::MOST_LOOKUPS.into()),
             ("IMPOSTOR_MOST_RATIO", impostor::MOST_RATIO.into()),
+        ],
+        "radiance_map" => vec![
+            ("RADIANCE_MAP_SET", radiance_map::SET as f64),
+            ("RADIANCE_MAP_AGREEMENT", radiance_map::AGREEMENT.into()),
+            ("RADIANCE_MAP_RINGS", radiance_map::RINGS.into()),
+            ("RADIANCE_MAP_MIRRORS", radiance_map::MOST_MIRRORS.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![

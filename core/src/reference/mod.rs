@@ -38,6 +38,7 @@ pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};
 pub use path::Apart;
 pub use settings::{COMPARED_PARAMS, Contribution, Options, PARAMS, is_spectral};
+pub use texture::mean_texel;
 pub use world::{Sighted, World};
 
 /// Id of the method, as documents name it.

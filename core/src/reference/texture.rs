@@ -94,10 +94,15 @@ fn texel(image: &Image, x: usize, y: usize, color: bool) -> Vec4 {
 
 /// Mean of a colour texture, for choosing among lights.
 pub(super) fn mean(scene: &Scene, texture: Option<TextureRef>) -> Vec3 {
-    let Some(image) = texture.and_then(|t| scene.images.get(t.image)) else { return Vec3::ONE };
+    mean_texel(scene, texture, true).map_or(Vec3::ONE, Vec4::xyz)
+}
+
+/// Mean RGBA of a texture; colours are decoded from sRGB. `None` where there is no texture.
+pub fn mean_texel(scene: &Scene, texture: Option<TextureRef>, color: bool) -> Option<Vec4> {
+    let image = scene.images.get(texture?.image)?;
     let (w, h) = (image.width as usize, image.height as usize);
     // Every texel of small images, 64 x 64 of large ones.
     let (nx, ny) = (w.min(64), h.min(64));
-    let sum: Vec4 = (0..nx * ny).map(|i| texel(image, (i % nx) * w / nx, (i / nx) * h / ny, true)).sum();
-    sum.xyz() / (nx * ny).max(1) as f32
+    let sum: Vec4 = (0..nx * ny).map(|i| texel(image, (i % nx) * w / nx, (i / nx) * h / ny, color)).sum();
+    Some(sum / (nx * ny).max(1) as f32)
 }

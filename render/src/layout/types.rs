@@ -2,7 +2,7 @@
 
 use burnish_core::material::TextureRole;
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec3, Vec2, Vec3, Vec4};
 
 /// A field of a shared struct.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +60,8 @@ pub const STRUCTS: &[Struct] = &[
     InstanceData::LAYOUT,
     ProbeData::LAYOUT,
     EffortData::LAYOUT,
+    MapData::LAYOUT,
+    MetData::LAYOUT,
     LightData::LAYOUT,
     RayData::LAYOUT,
     HitData::LAYOUT,
@@ -101,6 +103,9 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("AREA_CUBE_CORRECTED", AREA_CUBE_CORRECTED),
     ("AREA_CUBE_NORMALIZED", AREA_CUBE_NORMALIZED),
     ("AREA_CUBE_MIDDLES", AREA_CUBE_MIDDLES),
+    ("MAP_SMOOTH", MAP_SMOOTH),
+    ("MAP_BOX", MAP_BOX),
+    ("MAP_UNGUARDED", MAP_UNGUARDED),
     ("HIT_NONE", HIT_NONE),
 ];
 
@@ -144,6 +149,13 @@ pub const CONTRIBUTION_LIGHT: u32 = 3;
 pub const SHADOW_NONE: u32 = u32::MAX;
 /// Instance of a ray that meets nothing.
 pub const HIT_NONE: u32 = u32::MAX;
+
+/// Light of a map is interpolated between directions.
+pub const MAP_SMOOTH: u32 = 1;
+/// Places of a map count the same.
+pub const MAP_BOX: u32 = 2;
+/// Places of a map count wherever they face.
+pub const MAP_UNGUARDED: u32 = 4;
 
 /// Flag of [`EffortData`]: lobes look at few texels.
 pub const AREA_CUBE_FEW: u32 = 1;
@@ -341,6 +353,47 @@ shared! {
         shadow_depth: f32,
         pad0: u32,
         pad1: u32,
+    }
+}
+
+shared! {
+    /// A baked radiance map, and how it is looked up.
+    pub struct MapData {
+        low: Vec3,
+        edge: f32,
+        size: UVec3,
+        places: u32,
+        directions: u32,
+        reach: f32,
+        flags: u32,
+        lobes: u32,
+        factors: Vec3,
+        below: f32,
+        strengths: Vec3,
+        heads: u32,
+        corners: u32,
+        starts: u32,
+        neighbours: u32,
+        positions: u32,
+        normals: u32,
+        environment: u32,
+        lamps: u32,
+        glow: u32,
+    }
+}
+
+shared! {
+    /// A material as rays find it, as [`burnish_core::lighting::radiance_map::MetSurface`].
+    pub struct MetData {
+        base_color: Vec3,
+        metallic: f32,
+        emission: Vec3,
+        dielectric_f90: f32,
+        dielectric_f0: Vec3,
+        coat: f32,
+        alpha: Vec2,
+        coat_alpha: f32,
+        pad0: u32,
     }
 }
 

@@ -228,6 +228,54 @@ struct EffortData {
     pad0: u32,
 }
 
+const MAP_SMOOTH: u32 = 1u;
+const MAP_BOX: u32 = 2u;
+const MAP_UNGUARDED: u32 = 4u;
+
+// A baked radiance map in a list of words, and how it is looked up.
+struct MapData {
+    low: vec3f,
+    // Of a cell of the grid, metres.
+    edge: f32,
+    size: vec3u,
+    places: u32,
+    directions: u32,
+    reach: f32,
+    // MAP_ flags.
+    flags: u32,
+    // Directions drawn from the surface.
+    lobes: u32,
+    // From a number of each group to its radiance; 0 where it is dark or switched off.
+    factors: vec3f,
+    // Width of the lobe below which rays are sent.
+    below: f32,
+    // Of environment, lamps and glow, for what rays meet.
+    strengths: vec3f,
+    // Words where things begin.
+    heads: u32,
+    corners: u32,
+    starts: u32,
+    neighbours: u32,
+    positions: u32,
+    normals: u32,
+    environment: u32,
+    lamps: u32,
+    glow: u32,
+}
+
+// A material as rays find it, with the means of its textures.
+struct MetData {
+    base_color: vec3f,
+    metallic: f32,
+    emission: vec3f,
+    dielectric_f90: f32,
+    dielectric_f0: vec3f,
+    coat: f32,
+    alpha: vec2f,
+    coat_alpha: f32,
+    pad0: u32,
+}
+
 struct LightData {
     position: vec3f,
     kind: u32,

@@ -8,6 +8,7 @@ pub mod environment;
 pub mod forward;
 pub mod gbuffer;
 pub mod probe;
+pub mod radiance_map;
 pub mod shadow;
 
 use std::sync::OnceLock;

@@ -31,6 +31,8 @@ const TRACE_DISTANCE: u32 = 0x7ffffff8u;
 /// Children that wait: key and node.
 var<private> trace_stack: array<vec2u, TRACE_STACK>;
 var<private> trace_height: u32;
+/// Where the triangle of the last hit is.
+var<private> trace_met: u32;
 
 /// A ray made ready for the boxes of one tree.
 struct TraceSlabs {
@@ -121,6 +123,7 @@ fn trace_walk(ray: RayData, any_will_do: bool) -> HitData {
                 let before = instance < hit.instance || (instance == hit.instance && triangle < hit.triangle);
                 if met.t < hit.t || (hit.instance != HIT_NONE && before) {
                     hit = HitData(met.t, instance, triangle, 0u, met.barycentric, 0u, 0u);
+                    trace_met = base;
                 }
             }
             if any_will_do && hit.instance != HIT_NONE {
@@ -147,6 +150,14 @@ fn trace_walk(ray: RayData, any_will_do: bool) -> HitData {
         current = next;
     }
     return hit;
+}
+
+/// Normal of the triangle of the last hit, in the space of its mesh, of any length, on the side where corners run counter-clockwise.
+fn trace_met_normal() -> vec3f {
+    let a = bitcast<vec3f>(trace_words[trace_met].xyz);
+    return cross(
+        bitcast<vec3f>(trace_words[trace_met + 1u].xyz) - a, bitcast<vec3f>(trace_words[trace_met + 2u].xyz) - a,
+    );
 }
 
 /// Comparisons of numbers that are none are not defined, those of their bits are.

@@ -3,6 +3,7 @@
 //! `UPDATE_SNAPSHOTS=1 cargo test --workspace --test ui` accepts how the window looks now; `BURNISH_SEEDS=20` lets the
 //! monkey loose twenty times.
 
+mod baked;
 mod bench;
 mod chart;
 mod compare;
@@ -25,6 +26,7 @@ fn main() {
         environment::trials(),
         lights::trials(),
         probes::trials(),
+        baked::trials(),
         looks::trials(),
         compare::trials(),
         chart::trials(),

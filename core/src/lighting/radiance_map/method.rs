@@ -8,7 +8,7 @@ use half::f16;
 
 use super::bake::{Asked, GROUPS, age};
 use super::directions::{Directions, FEWEST, Spread};
-use super::near::{self, Grid, Near, SET};
+use super::near::{self, Filter, Grid, Near, SET};
 use super::run::run;
 use super::shards;
 use crate::job::Handle;
@@ -98,6 +98,24 @@ const INTERPOLATION: ParamSpec = ParamSpec {
     affects: Affects::Frame,
 };
 
+const FILTER: ParamSpec = ParamSpec {
+    key: "filter",
+    label: "Filter",
+    unit: "",
+    kind: ParamKind::Choice { options: &["hat", "box"], default: 0 },
+    help: "How places around a point are weighed: a hat over their distance, or all of them the same.",
+    affects: Affects::Frame,
+};
+
+const GUARDS: ParamSpec = ParamSpec {
+    key: "guards",
+    label: "Guards",
+    unit: "",
+    kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
+    help: "Places whose surface faces elsewhere, or lies off the plane of a point, do not light it. off shows what leaks without.",
+    affects: Affects::Frame,
+};
+
 const fn strength(key: &'static str, label: &'static str, help: &'static str) -> ParamSpec {
     ParamSpec {
         key,
@@ -129,6 +147,8 @@ pub const PARAMS: &[ParamSpec] = &[
     LOBE_SAMPLES,
     TRACE_BELOW,
     INTERPOLATION,
+    FILTER,
+    GUARDS,
     STRENGTHS[0],
     STRENGTHS[1],
     STRENGTHS[2],
@@ -217,6 +237,39 @@ fn is_choice(settings: &Settings, spec: &ParamSpec, place: usize) -> bool {
     settings.get(spec.key).unwrap_or(spec.default()) == ParamValue::Choice(place)
 }
 
+/// How a map is looked up, from settings made of [`PARAMS`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Directions drawn from the surface.
+    pub lobes: u32,
+    /// Width of the lobe below which rays are traced.
+    pub below: f32,
+    /// Light is interpolated between directions.
+    pub smooth: bool,
+    /// Which places count.
+    pub filter: Filter,
+    /// Factors on the light of each of [`GROUPS`].
+    pub strengths: [f32; 3],
+}
+
+impl Look {
+    /// That of settings.
+    pub fn new(settings: &Settings) -> Look {
+        Look {
+            lobes: whole(settings, &LOBE_SAMPLES),
+            below: number(settings, &TRACE_BELOW).powi(2),
+            smooth: is_choice(settings, &INTERPOLATION, 1),
+            filter: filter(settings),
+            strengths: STRENGTHS.map(|spec| number(settings, &spec)),
+        }
+    }
+}
+
+/// How places are weighed, from settings made of [`PARAMS`].
+fn filter(settings: &Settings) -> Filter {
+    Filter { box_shaped: is_choice(settings, &FILTER, 1), unguarded: is_choice(settings, &GUARDS, 1) }
+}
+
 /// Directions, made once for all who ask.
 fn directions(spread: Spread, count: u32) -> Arc<Directions> {
     type Made = HashMap<(Spread, u32), Arc<Directions>>;
@@ -243,7 +296,7 @@ pub(super) fn asked_directions(settings: &Settings) -> Arc<Directions> {
 }
 
 /// Those of a map; `None` where there is no map.
-pub(super) fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
+pub fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
     let [spread, count] = *prepared.whole("directions") else { return None };
     Some(directions(*Spread::ALL.get(spread as usize)?, count))
 }
@@ -254,9 +307,7 @@ struct Map<'a> {
     /// Light of each group with what it is multiplied by.
     groups: Vec<(&'a [f16], f32)>,
     directions: Arc<Directions>,
-    smooth: bool,
-    /// Factors on the light of the environment, of lamps, of what glows.
-    strengths: [f32; 3],
+    look: Look,
 }
 
 impl<'a> Map<'a> {
@@ -272,8 +323,8 @@ impl<'a> Map<'a> {
             return None;
         }
         let mut groups = Vec::new();
-        let strengths = STRENGTHS.map(|spec| number(settings, &spec));
-        for (name, strength) in GROUPS.iter().zip(strengths) {
+        let look = Look::new(settings);
+        for (name, strength) in GROUPS.iter().zip(look.strengths) {
             let light = prepared.halves(name);
             let scale = prepared.floats(&format!("{name} scale")).first().copied().unwrap_or(1.0);
             if light.len() == 3 * places * directions.len() {
@@ -283,15 +334,22 @@ impl<'a> Map<'a> {
             }
         }
         let near = Near::new(positions, normals, grid, starts, neighbours);
-        Some(Map { near, groups, directions, smooth: is_choice(settings, &INTERPOLATION, 1), strengths })
+        Some(Map { near, groups, directions, look })
     }
 
     /// Radiance that arrives at a point from each direction.
     fn arriving(&self, position: Vec3, normal: Vec3) -> Vec<Vec3> {
         let count = self.directions.len();
         let mut light = vec![Vec3::ZERO; count];
-        let Some(set) = self.near.set(position, normal) else { return light };
-        for (weight, place) in near::weights(&self.near, set, position, normal).into_iter().zip(set) {
+        let searched;
+        let set = if self.look.filter.unguarded {
+            searched = self.near.nearest_of_all(position, SET);
+            &searched
+        } else {
+            let Some(set) = self.near.set(position, normal) else { return light };
+            set
+        };
+        for (weight, place) in near::weights(&self.near, set, position, normal, self.look.filter).into_iter().zip(set) {
             if weight <= 0.0 {
                 continue;
             }
@@ -309,7 +367,7 @@ impl<'a> Map<'a> {
     /// Radiance from a direction between those of the map: a mean of the nearest, by a hat over the angle that is zero where the cells next to the
     /// own end.
     fn toward(&self, light: &[Vec3], direction: Vec3) -> Vec3 {
-        if !self.smooth {
+        if !self.look.smooth {
             return light[self.directions.nearest(direction)];
         }
         let reach = self.directions.reach();
@@ -328,12 +386,12 @@ const DRAFT_POINTS: u32 = 2000;
 const DRAFT_DIRECTIONS: u32 = 32;
 
 /// Bounces between smooth surfaces that are traced.
-const MOST_MIRRORS: u32 = 4;
+pub const MOST_MIRRORS: u32 = 4;
 
 impl ShadePoint for RadianceMap {
     fn radiance(&self, point: &SurfacePoint<'_>, prepared: &Prepared, settings: &Settings, random: [f32; 4]) -> Vec3 {
         let Some(map) = Map::of(prepared, settings) else { return Vec3::ZERO };
-        let effort = Effort { lobes: whole(settings, &LOBE_SAMPLES), below: number(settings, &TRACE_BELOW).powi(2) };
+        let effort = Effort { lobes: map.look.lobes, below: map.look.below };
         reflected(&map, point, effort, random, 0)
     }
 }
@@ -367,7 +425,7 @@ fn reflected(map: &Map<'_>, point: &SurfacePoint<'_>, effort: Effort, random: [f
         if response == Vec3::ZERO {
             continue;
         }
-        let arriving = if map.smooth { map.toward(&light, drawn.direction) } else { *known };
+        let arriving = if map.look.smooth { map.toward(&light, drawn.direction) } else { *known };
         let pdf = if pdf.is_finite() { pdf } else { 0.0 };
         sum += response * arriving / (drawn.pdf + lobes * pdf);
     }
@@ -393,14 +451,14 @@ fn traced(map: &Map<'_>, point: &SurfacePoint<'_>, effort: Effort, random: [f32;
         let Some(drawn) = point.drawn(numbers(random, i)) else { continue };
         let eye = point.toward(drawn.direction, pcg(random[3].to_bits().wrapping_add(i)));
         let light = match eye.point() {
-            None => map.strengths[0] * point.sky(drawn.direction),
+            None => map.look.strengths[0] * point.sky(drawn.direction),
             Some(met) => {
                 let again = numbers(random, i + 977);
                 let random = [again.x, again.y, again.z, random[3]];
                 // Lamps light it too; where it is seen from the eye the frame adds them.
                 let lamps = met.lamps(random).0;
-                map.strengths[2] * met.emission()
-                    + map.strengths[1] * lamps
+                map.look.strengths[2] * met.emission()
+                    + map.look.strengths[1] * lamps
                     + reflected(map, &met, Effort { lobes: 0, ..effort }, random, mirrors + 1)
             }
         };

@@ -10,7 +10,7 @@ pub const AGREEMENT: f32 = 0.5;
 /// Cells of a grid along an axis, at most.
 const MOST_CELLS: u32 = 256;
 /// Rings of cells around a point that are searched.
-const MOST_RINGS: i32 = 6;
+pub const RINGS: i32 = 6;
 
 /// A grid over places.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,16 @@ impl Grid {
     }
 }
 
+/// Which places light a point, and how much each counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// All of a set count the same; else by a hat over the distance.
+    pub box_shaped: bool,
+    /// Places count whose surface faces elsewhere or lies off the plane of the point, as they would without a guard against leaks. The places are
+    /// searched anew for each point, since sets hold none of these.
+    pub unguarded: bool,
+}
+
 /// Places in the order of a grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Near<'a> {
@@ -110,13 +120,22 @@ impl<'a> Near<'a> {
 
     /// The `count` nearest places whose normal agrees, the nearest first; fewer where there are not so many nearby.
     pub fn nearest(&self, position: Vec3, normal: Vec3, count: usize) -> Vec<u32> {
+        self.found(position, normal, AGREEMENT, count)
+    }
+
+    /// Likewise, whatever their normal.
+    pub fn nearest_of_all(&self, position: Vec3, count: usize) -> Vec<u32> {
+        self.found(position, Vec3::Z, f32::NEG_INFINITY, count)
+    }
+
+    fn found(&self, position: Vec3, normal: Vec3, agreement: f32, count: usize) -> Vec<u32> {
         let mut found: Vec<(f32, u32)> = Vec::with_capacity(count + 1);
         if self.is_empty() {
             return Vec::new();
         }
         let middle = self.grid.cell(position).as_ivec3();
         let size = self.grid.size.as_ivec3();
-        for ring in 0..=MOST_RINGS {
+        for ring in 0..=RINGS {
             // All within this are in the rings so far.
             let covered = self.grid.edge * (ring - 1) as f32;
             if found.len() == count && found.last().is_some_and(|last| last.0.sqrt() <= covered) {
@@ -130,7 +149,8 @@ impl<'a> Near<'a> {
                     let mut x = if is_face { low.x } else { middle.x - ring };
                     while x <= high.x {
                         if x >= low.x {
-                            self.gather(glam::IVec3::new(x, y, z).as_uvec3(), (position, normal), count, &mut found);
+                            let cell = glam::IVec3::new(x, y, z).as_uvec3();
+                            self.gather(cell, (position, normal, agreement), count, &mut found);
                         }
                         x += step;
                     }
@@ -140,10 +160,16 @@ impl<'a> Near<'a> {
         found.into_iter().map(|(_, place)| place).collect()
     }
 
-    fn gather(&self, cell: UVec3, (position, normal): (Vec3, Vec3), count: usize, found: &mut Vec<(f32, u32)>) {
+    fn gather(
+        &self,
+        cell: UVec3,
+        (position, normal, agreement): (Vec3, Vec3, f32),
+        count: usize,
+        found: &mut Vec<(f32, u32)>,
+    ) {
         let cell = self.grid.index(cell);
         for place in self.starts[cell]..self.starts[cell + 1] {
-            if self.normal(place).dot(normal) < AGREEMENT {
+            if self.normal(place).dot(normal) < agreement {
                 continue;
             }
             let distance = self.position(place).distance_squared(position);
@@ -183,7 +209,7 @@ impl<'a> Near<'a> {
 
 /// Weights of the places of a set at a point: a hat over the distance that ends a little beyond the farthest, times how far the normals agree, times how
 /// near the place is to the plane of the surface. They sum to 1.
-pub fn weights(near: &Near<'_>, set: &[u32], position: Vec3, normal: Vec3) -> [f32; SET] {
+pub fn weights(near: &Near<'_>, set: &[u32], position: Vec3, normal: Vec3, filter: Filter) -> [f32; SET] {
     /// So that the farthest place counts a little.
     const BEYOND: f32 = 1.0001;
     let mut distances = [0.0; SET];
@@ -196,7 +222,8 @@ pub fn weights(near: &Near<'_>, set: &[u32], position: Vec3, normal: Vec3) -> [f
         let agreement = ((near.normal(*place).dot(normal) - AGREEMENT) / (1.0 - AGREEMENT)).max(0.0);
         let off_plane = (near.position(*place) - position).dot(normal).abs();
         let flat = (1.0 - 2.0 * off_plane / reach.max(1e-20)).max(0.0);
-        weights[i] = (1.0 - distances[i] / reach.max(1e-20)).max(0.0) * agreement * flat;
+        let shape = if filter.box_shaped { 1.0 } else { (1.0 - distances[i] / reach.max(1e-20)).max(0.0) };
+        weights[i] = shape * if filter.unguarded { 1.0 } else { agreement * flat };
     }
     let sum: f32 = weights.iter().sum();
     if sum > 1e-12 {
@@ -252,8 +279,18 @@ mod tests {
         let near = Near::new(&positions, &normals, grid, &starts, &sets);
         let set = near.set(Vec3::new(0.7, 0.5, 0.0), Vec3::Z).unwrap();
         assert_eq!(set.len(), SET);
-        let weights = weights(&near, set, Vec3::new(0.7, 0.5, 0.0), Vec3::Z);
-        assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.iter().all(|w| *w >= 0.0));
+        let at = |filter| weights(&near, set, Vec3::new(0.7, 0.5, 0.0), Vec3::Z, filter);
+        for (box_shaped, unguarded) in [(false, false), (false, true), (true, false), (true, true)] {
+            let weights = at(Filter { box_shaped, unguarded });
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.iter().all(|w| *w >= 0.0));
+        }
+        // On a plane all of a box count the same, whose hats do not.
+        assert_eq!(at(Filter { box_shaped: true, unguarded: false }), [0.125; SET]);
+        assert!(at(Filter::default()).iter().any(|w| (w - 0.125).abs() > 0.01));
+        // Close to the edge, where the other wall is nearer than what is on the own.
+        let edge = Vec3::new(0.01, 0.5, 0.0);
+        let normals = |places: &[u32]| places.iter().filter(|place| near.normal(**place) == Vec3::X).count();
+        assert!(normals(&near.nearest(edge, Vec3::Z, 8)) == 0 && normals(&near.nearest_of_all(edge, 8)) > 0);
         // Far outside, and beside no normal: something that is there.
         assert!(near.set(Vec3::splat(100.0), Vec3::NEG_Y).is_some());
         assert!(Near::new(&[], &[], grid, &starts, &[]).set(Vec3::ZERO, Vec3::Z).is_none());

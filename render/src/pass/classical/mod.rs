@@ -90,11 +90,11 @@ pub struct ClassicalPass {
     layouts: [wgpu::BindGroupLayout; 4],
     module: OnceLock<wgpu::ShaderModule>,
     /// By their variants.
-    pipelines: [OnceLock<wgpu::RenderPipeline>; 8],
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 16],
 }
 
 /// What a picture needs of the shader. A software driver compiles less in a part of the time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Variant {
     /// Samples lobes, as often as the view says; else they are looked up once.
     pub sampled: bool,
@@ -102,6 +102,8 @@ pub struct Variant {
     pub areas: bool,
     /// Leaves to probes what they know.
     pub probed: bool,
+    /// Leaves the environment to another pass.
+    pub mapped: bool,
 }
 
 impl ClassicalPass {
@@ -132,12 +134,19 @@ impl ClassicalPass {
     }
 
     /// The pipeline of a variant. Blocks while it is compiled.
-    pub fn pipeline(&self, Variant { sampled, areas, probed }: Variant) -> &wgpu::RenderPipeline {
-        self.pipelines[usize::from(sampled) + 2 * usize::from(areas) + 4 * usize::from(probed)].get_or_init(|| {
+    pub fn pipeline(&self, Variant { sampled, areas, probed, mapped }: Variant) -> &wgpu::RenderPipeline {
+        let [sampled_bit, areas_bit, probed_bit, mapped_bit] = [sampled, areas, probed, mapped].map(usize::from);
+        self.pipelines[sampled_bit + 2 * areas_bit + 4 * probed_bit + 8 * mapped_bit].get_or_init(|| {
             let module = self.module.get_or_init(|| shader::CLASSICAL.module(&self.device));
             let layouts = self.layouts.each_ref().map(Some);
             let mut constants = frame_constants(self.format);
-            let switches = [("sampled", sampled), ("areas", areas), ("probed", probed), ("discards", self.software)];
+            let switches = [
+                ("sampled", sampled),
+                ("areas", areas),
+                ("probed", probed),
+                ("mapped", mapped),
+                ("discards", self.software),
+            ];
             constants.extend(switches.map(|(name, on)| (name, f64::from(u8::from(on)))));
             fullscreen_pipeline(&self.device, "classical", &layouts, module, self.format, &constants)
         })

@@ -70,6 +70,9 @@ override areas: bool = true;
 // Without it lobes are looked up once, and the code that samples them is left out.
 override sampled: bool = true;
 
+// With it the environment is left to another pass.
+override mapped: bool = false;
+
 // Without it no probes take the place of the environment.
 override probed: bool = false;
 
@@ -104,7 +107,7 @@ fn shade(t: Texel, position: vec3f, pixel: vec2u) -> vec3f {
             value += lamp_light(lights[i], s, base, coat, to_viewer, position, t.geometric_normal, rotation);
         }
     }
-    if !shows(CONTRIBUTION_ENVIRONMENT) {
+    if mapped || !shows(CONTRIBUTION_ENVIRONMENT) {
         return min(value, vec3f(frame_max));
     }
     var left = 1.0;

@@ -102,7 +102,7 @@ impl Encoding {
             let scene = &resident.scene;
             let mut used = scene.instances.iter().filter(|instance| instance.visible);
             let traced = used.any(|instance| MetSurface::may_be_smooth(scene, instance.material, look.map.below));
-            (passes.radiance_map.look(gpu, &mapped.map.data(&look.map)), traced)
+            (mapped.map.look(gpu, &passes.radiance_map, &look.map, jitter.frame), traced)
         });
         Encoding {
             map,

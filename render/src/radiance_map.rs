@@ -3,14 +3,18 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::radiance_map::{self, Look, MetSurface};
+use burnish_core::lighting::radiance_map::{self, Directions, Look, MetSurface};
 use burnish_core::scene::Scene;
-use glam::{UVec3, Vec3};
+use glam::{UVec3, Vec3, Vec4};
 
 use crate::device::Gpu;
 use crate::error::RenderError;
 use crate::layout::types::{MAP_BOX, MAP_SMOOTH, MAP_UNGUARDED, MapData, MetData};
+use crate::pass::radiance_map::RadianceMapPass;
 use crate::scene::check_size;
+
+/// Directions of a map, at most: as many as its setting takes.
+const MOST_DIRECTIONS: usize = 1024;
 
 /// The map of a preparation: one buffer of words, since shaders read few buffers.
 pub(crate) struct GpuMap {
@@ -18,6 +22,9 @@ pub(crate) struct GpuMap {
     pub words: wgpu::Buffer,
     /// Where things are in it; [`GpuMap::data`] adds how they are looked up.
     shape: MapData,
+    directions: Arc<Directions>,
+    /// Directions and areas of their cells, for shaders.
+    with_areas: wgpu::Buffer,
     /// What the numbers of each group are multiplied by; 0 for those that are dark.
     scales: [f32; 3],
 }
@@ -36,17 +43,15 @@ impl GpuMap {
             && neighbours.len() == radiance_map::SET * places
             && size.len() == 3
             && starts.len() == cells + 1;
-        if !is_whole {
+        if !is_whole || directions.len() > MOST_DIRECTIONS {
             return Err(unfit());
         }
-        let (heads, corners) = directions.words();
         let mut words: Vec<u32> = Vec::new();
         let mut place = |numbers: &[u32]| {
             let first = words.len() as u32;
             words.extend_from_slice(numbers);
             first
         };
-        let [heads, corners] = [heads.as_flattened(), corners.as_flattened()].map(&mut place);
         let [starts, neighbours] = [starts, neighbours].map(&mut place);
         let [positions, normals] = [positions, normals].map(|floats| place(bytemuck::cast_slice(floats)));
         let (mut scales, mut firsts) = ([0.0; 3], [0; 3]);
@@ -80,8 +85,6 @@ impl GpuMap {
             factors: Vec3::ZERO,
             below: 0.0,
             strengths: Vec3::ONE,
-            heads,
-            corners,
             starts,
             neighbours,
             positions,
@@ -89,13 +92,25 @@ impl GpuMap {
             environment: firsts[0],
             lamps: firsts[1],
             glow: firsts[2],
+            pad0: 0,
+            pad1: 0,
         };
         let words = gpu.buffer("radiance map", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
-        Ok(GpuMap { prepared: prepared.clone(), words, shape, scales })
+        let with_areas: Vec<Vec4> = (0..directions.len()).map(|k| directions.with_area(k)).collect();
+        let with_areas = vectors(gpu, &with_areas);
+        Ok(GpuMap { prepared: prepared.clone(), words, shape, directions, with_areas, scales })
+    }
+
+    /// Group 3 of a frame: how it is looked up, and directions drawn for all pixels alike, which are others in each frame.
+    pub fn look(&self, gpu: &Gpu, pass: &RadianceMapPass, look: &Look, frame: u32) -> wgpu::BindGroup {
+        // Steps of the plastic number and of the golden ratio.
+        let turn = (frame as f32 * Vec3::new(0.754_877_67, 0.569_840_3, 0.618_034)).fract();
+        let drawn: Vec<Vec4> = self.directions.drawn_all(turn).map(|drawn| drawn.direction.extend(drawn.pdf)).collect();
+        pass.look(gpu, &self.data(look), [&self.with_areas, &vectors(gpu, &drawn)])
     }
 
     /// What shaders are told of it.
-    pub fn data(&self, look: &Look) -> MapData {
+    fn data(&self, look: &Look) -> MapData {
         let flags =
             [(look.smooth, MAP_SMOOTH), (look.filter.box_shaped, MAP_BOX), (look.filter.unguarded, MAP_UNGUARDED)];
         let strengths = Vec3::from(look.strengths);
@@ -108,6 +123,13 @@ impl GpuMap {
             ..self.shape
         }
     }
+}
+
+/// Vectors of as many directions as there may be, as a uniform.
+fn vectors(gpu: &Gpu, of: &[Vec4]) -> wgpu::Buffer {
+    let mut all = of.to_vec();
+    all.resize(MOST_DIRECTIONS, Vec4::ZERO);
+    gpu.buffer("directions", bytemuck::cast_slice(&all), wgpu::BufferUsages::UNIFORM)
 }
 
 /// What rays find of each material.

@@ -2,7 +2,7 @@
 
 use burnish_core::color::tone;
 use burnish_core::leaf::{self, Leaf};
-use burnish_core::lighting::{area, area_cube, classical, impostor, probe, radiance_map};
+use burnish_core::lighting::{area, area_cube, classical, impostor, probe};
 use burnish_core::measure::view;
 use burnish_core::scene::environment::ground;
 use burnish_core::surface::{fresnel, layered, micro_normal};
@@ -124,7 +124,7 @@ pub static IMPOSTOR_ERROR: Shader = Shader {
 /// Adds the light of a baked map.
 pub static RADIANCE_MAP: Shader = Shader {
     name: "radiance map",
-    leaves: &[&classical::WGSL, &radiance_map::WGSL],
+    leaves: &[&classical::WGSL],
     files: &[
         TYPES,
         TEXEL,
@@ -135,6 +135,7 @@ pub static RADIANCE_MAP: Shader = Shader {
         LAMP,
         include_str!("trace/numbers.wgsl"),
         include_str!("trace/trace.wgsl"),
+        include_str!("pass/radiance_map/lookup.wgsl"),
         include_str!("pass/radiance_map/radiance_map.wgsl"),
     ],
 };

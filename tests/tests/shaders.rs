@@ -77,6 +77,15 @@ fn what_is_timed_without_a_curve_is_the_same_in_both_languages() {
 }
 
 #[test]
+fn lookups_of_a_radiance_map_have_the_constants_of_the_processor() {
+    let map = validated("radiance map", &shader::RADIANCE_MAP.source());
+    assert_eq!(constant(&map, "RADIANCE_MAP_SET"), radiance_map::SET as f64);
+    assert_eq!(constant(&map, "RADIANCE_MAP_AGREEMENT"), f64::from(radiance_map::AGREEMENT));
+    assert_eq!(constant(&map, "RADIANCE_MAP_RINGS"), f64::from(radiance_map::RINGS));
+    assert_eq!(constant(&map, "RADIANCE_MAP_MIRRORS"), f64::from(radiance_map::MOST_MIRRORS));
+}
+
+#[test]
 fn as_many_children_of_a_tree_wait_as_the_shader_has_places() {
     let trace = validated("trace", &shader::TRACE.source());
     assert_eq!(constant(&trace, "TRACE_STACK"), burnish_render::trace::STACK as f64);
@@ -229,12 +238,6 @@ fn twins(leaf: &str) -> Vec<(&'static str, f64)> {
             ("IMPOSTOR_SHOW_ERROR", impostor::SHOW_ERROR.into()),
             ("IMPOSTOR_MOST_LOOKUPS", impostor::MOST_LOOKUPS.into()),
             ("IMPOSTOR_MOST_RATIO", impostor::MOST_RATIO.into()),
-        ],
-        "radiance_map" => vec![
-            ("RADIANCE_MAP_SET", radiance_map::SET as f64),
-            ("RADIANCE_MAP_AGREEMENT", radiance_map::AGREEMENT.into()),
-            ("RADIANCE_MAP_RINGS", radiance_map::RINGS.into()),
-            ("RADIANCE_MAP_MIRRORS", radiance_map::MOST_MIRRORS.into()),
         ],
         "coat" => vec![("COAT_F0", coat::F0.into())],
         "micro_normal" => vec![

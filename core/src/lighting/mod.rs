@@ -57,5 +57,4 @@ pub fn find(id: &str) -> Option<&'static dyn Method> {
 }
 
 /// The WGSL twins of this folder.
-pub static LEAVES: &[&Leaf] =
-    &[&area::WGSL, &area_cube::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL, &radiance_map::WGSL];
+pub static LEAVES: &[&Leaf] = &[&area::WGSL, &area_cube::WGSL, &classical::WGSL, &impostor::WGSL, &probe::WGSL];

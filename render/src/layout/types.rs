@@ -370,8 +370,6 @@ shared! {
         factors: Vec3,
         below: f32,
         strengths: Vec3,
-        heads: u32,
-        corners: u32,
         starts: u32,
         neighbours: u32,
         positions: u32,
@@ -379,6 +377,8 @@ shared! {
         environment: u32,
         lamps: u32,
         glow: u32,
+        pad0: u32,
+        pad1: u32,
     }
 }
 

@@ -252,8 +252,6 @@ struct MapData {
     // Of environment, lamps and glow, for what rays meet.
     strengths: vec3f,
     // Words where things begin.
-    heads: u32,
-    corners: u32,
     starts: u32,
     neighbours: u32,
     positions: u32,
@@ -261,6 +259,8 @@ struct MapData {
     environment: u32,
     lamps: u32,
     glow: u32,
+    pad0: u32,
+    pad1: u32,
 }
 
 // A material as rays find it, with the means of its textures.

@@ -128,10 +128,12 @@ fn plan() {
     let mut bench = bench("plan");
     let measure =
         |bench: &Bench| !bench.window.get_by_role_and_label(Role::Button, "Measure").accesskit_node().is_disabled();
-    bench.window.get_by_label("14 measurements");
+    bench.window.get_by_label("15 measurements");
     bench.click_role(Role::CheckBox, "impostor");
-    bench.window.get_by_label("9 measurements");
+    bench.window.get_by_label("10 measurements");
     bench.click_role(Role::CheckBox, "area-cube");
+    bench.window.get_by_label("9 measurements");
+    bench.click_role(Role::CheckBox, "radiance-map");
     bench.window.get_by_label("8 measurements");
     bench.window.get_by_role_and_label(Role::TextInput, "Values of classical 1").focus();
     bench.window.run_steps(2);

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+
+use crate::math::sampling::spiral;
 
 /// How directions are spread over the sphere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -99,24 +101,18 @@ impl Directions {
         self.reach
     }
 
-    /// All of it as words for shaders. For each direction three vectors: itself and the area of its cell in the plane that touches the sphere there; an
-    /// axis of that plane and the number of the first corner; the other axis and how many corners there are. Then the corners: place in the
-    /// plane, area up to the edge that begins there, 0.
-    pub fn words(&self) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
-        let bits = |v: DVec3, w: u32| {
-            let [x, y, z] = v.as_vec3().to_array().map(f32::to_bits);
-            [x, y, z, w]
-        };
-        let (mut heads, mut corners) = (Vec::new(), Vec::new());
-        for (own, cell) in self.list.iter().zip(&self.cells) {
-            let whole = cell.areas.last().copied().unwrap_or(0.0) as f32;
-            heads.push(bits(own.as_dvec3(), whole.to_bits()));
-            heads.push(bits(cell.x, corners.len() as u32));
-            heads.push(bits(cell.y, cell.corners.len() as u32));
-            let corner = |(corner, area): (&DVec2, &f64)| bits(corner.extend(*area), 0);
-            corners.extend(cell.corners.iter().zip(&cell.areas).map(corner));
-        }
-        (heads, corners)
+    /// One of them, and the area of its cell in the plane that touches the sphere there: what [`Directions::pdf`] is made of.
+    pub fn with_area(&self, k: usize) -> Vec4 {
+        self.list[k].extend(self.cells[k].areas.last().copied().unwrap_or(0.0) as f32)
+    }
+
+    /// A direction in each cell with its density, by numbers in `[0, 1)^3` that turn all of them.
+    pub fn drawn_all(&self, random: Vec3) -> impl Iterator<Item = Drawn> + '_ {
+        let count = self.len() as u32;
+        (0..count).map(move |k| {
+            let u = spiral(k, count, random.truncate());
+            self.draw(k as usize, Vec2::new(u.x, (u.y * 7.0 + random.z).fract()))
+        })
     }
 
     /// The direction in whose cell another one is.

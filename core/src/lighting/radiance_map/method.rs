@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
-use glam::{UVec3, Vec2, Vec3};
+use glam::{UVec3, Vec3};
 use half::f16;
 
 use super::bake::{Asked, GROUPS, age};
@@ -14,7 +14,7 @@ use super::shards;
 use crate::job::Handle;
 use crate::lighting::classical;
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
-use crate::math::sampling::{pcg, spiral, unit};
+use crate::math::sampling::{pcg, unit};
 use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
 use crate::reference::{SurfacePoint, World};
 
@@ -417,10 +417,8 @@ fn reflected(map: &Map<'_>, point: &SurfacePoint<'_>, effort: Effort, random: [f
     let lobes = effort.lobes as f32;
     let directions = &map.directions;
     let mut sum = Vec3::ZERO;
-    for (k, known) in light.iter().enumerate() {
-        // In its cell, so that the sum is right in the mean.
-        let u = spiral(k as u32, directions.len() as u32, Vec2::new(random[0], random[1]));
-        let drawn = directions.draw(k, Vec2::new(u.x, (u.y * 7.0 + random[2]).fract()));
+    // In its cell, so that the sum is right in the mean.
+    for (known, drawn) in light.iter().zip(directions.drawn_all(Vec3::new(random[0], random[1], random[2]))) {
         let (response, pdf) = point.response_and_density(drawn.direction);
         if response == Vec3::ZERO {
             continue;

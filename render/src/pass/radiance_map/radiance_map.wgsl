@@ -9,6 +9,9 @@
 @group(2) @binding(6) var<storage, read> met: array<MetData>;
 @group(2) @binding(7) var<storage, read> map_words: array<u32>;
 @group(3) @binding(0) var<uniform> given: MapData;
+// Directions of the map with the areas of their cells, and one drawn in each cell for this frame with its density.
+@group(3) @binding(1) var<uniform> map_directions: array<vec4f, 1024>;
+@group(3) @binding(2) var<uniform> map_drawn: array<vec4f, 1024>;
 
 // Without it no surface sends rays, and the code that follows them is left out.
 override traced: bool = true;
@@ -58,13 +61,12 @@ fn radiance_map_neighbour(index: u32) -> u32 {
     return map_words[given.neighbours + index];
 }
 
-fn radiance_map_cell(index: u32) -> vec4u {
-    let first = given.heads + 4u * index;
-    return vec4u(map_words[first], map_words[first + 1u], map_words[first + 2u], map_words[first + 3u]);
+fn radiance_map_direction(k: u32) -> vec4f {
+    return map_directions[k];
 }
 
-fn radiance_map_corner(index: u32) -> vec4f {
-    return vec4f(map_vector(given.corners + 4u * index), 0.0);
+fn radiance_map_drawn(k: u32) -> vec4f {
+    return map_drawn[k];
 }
 
 // Three halves of a list that begins at a word.

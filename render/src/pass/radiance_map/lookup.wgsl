@@ -2,7 +2,8 @@
 //   radiance_map_position(place), radiance_map_normal(place)   of a place
 //   radiance_map_start(cell)                                   first place of a cell of the grid
 //   radiance_map_neighbour(index)                              sets of eight, one after another
-//   radiance_map_cell(index), radiance_map_corner(index)       words of the directions, see Directions::words
+//   radiance_map_direction(k)                                  of the map, and the area of its cell where a plane touches the sphere there
+//   radiance_map_drawn(k)                                      a direction drawn in its cell, and its density
 //   radiance_map_light(place, k)                               radiance of all groups
 // and what the surface terms look up.
 
@@ -32,11 +33,6 @@ struct RadianceMapShape {
 struct RadianceMapNear {
     places: array<u32, 8>,
     weights: array<f32, 8>,
-}
-
-struct RadianceMapDrawn {
-    direction: vec3f,
-    pdf: f32,
 }
 
 // The nearest places so far: squared distances and places.
@@ -79,12 +75,12 @@ fn radiance_map_nearest(
                         let cell = radiance_map_grid_index(map, vec3u(vec3i(x, y, z)));
                         let end = radiance_map_start(cell + 1u);
                         for (var place = radiance_map_start(cell); place < end; place++) {
-                            if dot(radiance_map_normal(place), normal) < agreement {
-                                continue;
-                            }
                             let apart = radiance_map_position(place) - position;
                             let distance2 = dot(apart, apart);
                             if found.count == count && distance2 >= found.distances[count - 1u] {
+                                continue;
+                            }
+                            if dot(radiance_map_normal(place), normal) < agreement {
                                 continue;
                             }
                             // Behind all that are no farther, so that of two at one distance the first comes first.
@@ -178,16 +174,12 @@ fn radiance_map_arriving(near: RadianceMapNear, k: u32) -> vec3f {
     return light;
 }
 
-fn radiance_map_direction(k: u32) -> vec3f {
-    return bitcast<vec3f>(radiance_map_cell(3u * k).xyz);
-}
-
 // The direction in whose cell another one is.
 fn radiance_map_in_cell(map: RadianceMapShape, direction: vec3f) -> u32 {
     var best = 0u;
     var most = -2.0;
     for (var k = 0u; k < map.directions; k++) {
-        let cosine = dot(radiance_map_direction(k), direction);
+        let cosine = dot(radiance_map_direction(k).xyz, direction);
         if cosine >= most {
             most = cosine;
             best = k;
@@ -204,7 +196,7 @@ fn radiance_map_toward(map: RadianceMapShape, near: RadianceMapNear, direction: 
     var sum = vec3f(0.0);
     var weights = 0.0;
     for (var k = 0u; k < map.directions; k++) {
-        let weight = dot(radiance_map_direction(k), direction) - map.reach;
+        let weight = dot(radiance_map_direction(k).xyz, direction) - map.reach;
         if weight > 0.0 {
             sum += weight * radiance_map_arriving(near, k);
             weights += weight;
@@ -216,35 +208,11 @@ fn radiance_map_toward(map: RadianceMapShape, near: RadianceMapNear, direction: 
     return radiance_map_arriving(near, radiance_map_in_cell(map, direction));
 }
 
-// A direction in a cell, even in the plane that touches the sphere at its middle.
-fn radiance_map_draw(k: u32, u: vec2f) -> RadianceMapDrawn {
-    let own = radiance_map_cell(3u * k);
-    let x = radiance_map_cell(3u * k + 1u);
-    let y = radiance_map_cell(3u * k + 2u);
-    let first = x.w;
-    let count = y.w;
-    let whole = bitcast<f32>(own.w);
-    let wanted = u.x * whole;
-    var edge = 0u;
-    var before = 0.0;
-    while edge + 1u < count && radiance_map_corner(first + edge).z <= wanted {
-        before = radiance_map_corner(first + edge).z;
-        edge++;
-    }
-    let a = radiance_map_corner(first + edge);
-    let b = radiance_map_corner(first + (edge + 1u) % count);
-    let share = clamp((wanted - before) / max(a.z - before, 1e-30), 0.0, 1.0);
-    // Even in the triangle from the middle: the root of the way out, the rest along the edge.
-    let at = sqrt(u.y) * mix(a.xy, b.xy, share);
-    let toward = bitcast<vec3f>(own.xyz) + at.x * bitcast<vec3f>(x.xyz) + at.y * bitcast<vec3f>(y.xyz);
-    let range = length(toward);
-    return RadianceMapDrawn(toward / range, range * range * range / whole);
-}
-
-// Density of radiance_map_draw in a direction of the cell k.
+// Density of directions drawn in the cell k, in one of them.
 fn radiance_map_pdf(k: u32, direction: vec3f) -> f32 {
-    let range = 1.0 / max(dot(radiance_map_direction(k), direction), 1e-3);
-    return range * range * range / bitcast<f32>(radiance_map_cell(3u * k).w);
+    let own = radiance_map_direction(k);
+    let range = 1.0 / max(dot(own.xyz, direction), 1e-3);
+    return range * range * range / own.w;
 }
 
 // A surface seen from a direction, with the chances of its lobes, which sum to one or are all zero.
@@ -408,19 +376,18 @@ fn radiance_map_reflected(
     var sum = vec3f(0.0);
     for (var k = 0u; k < map.directions; k++) {
         // In its cell, so that the sum is right in the mean.
-        let u = sampling_spiral(k, map.directions, random.xy);
-        let drawn = radiance_map_draw(k, vec2f(u.x, fract(u.y * 7.0 + random.z)));
-        let response = radiance_map_response(seen, drawn.direction);
+        let drawn = radiance_map_drawn(k);
+        let response = radiance_map_response(seen, drawn.xyz);
         if all(response.xyz == vec3f(0.0)) {
             continue;
         }
         var arriving: vec3f;
         if map.smoothed {
-            arriving = radiance_map_toward(map, near, drawn.direction);
+            arriving = radiance_map_toward(map, near, drawn.xyz);
         } else {
             arriving = radiance_map_arriving(near, k);
         }
-        sum += response.xyz * arriving / (drawn.pdf + f32(lobes) * response.w);
+        sum += response.xyz * arriving / (drawn.w + f32(lobes) * response.w);
     }
     for (var i = 0u; i < lobes; i++) {
         let drawn = radiance_map_lobe(seen, radiance_map_numbers(random, i));

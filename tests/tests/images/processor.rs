@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use burnish_core::job::Handle;
-use burnish_core::lighting::radiance_map::{self, RadianceMap};
 use burnish_core::lighting::{Drawing, Layers, Method, Prepared, Store, area_cube, classical, impostor};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -46,8 +45,7 @@ pub fn trials() -> Vec<Trial> {
     });
     let layers =
         trial("impostor is the same on device and processor: through two layers", &[Need::Gpu], same_with_layers);
-    let baked = trial("radiance-map is the same on device and processor", &[Need::Gpu], same_baked);
-    classical.chain(impostor).chain(area_cube).chain([layers, baked]).collect()
+    classical.chain(impostor).chain(area_cube).chain([layers]).collect()
 }
 
 /// A rough body in a room, with two probes that fade into each other on it. Of what no probe serves the device has filtered
@@ -62,16 +60,6 @@ fn same_with_probes(method: &'static dyn Method, given: &[(&str, &str)]) {
         settings.set(key, value).expect("a setting");
     }
     assert_same(scene, method, &settings);
-}
-
-/// A rough body in a room whose light was baked.
-fn same_baked() {
-    let scene = gallery::open("room?roughness=0.6").expect("in the gallery");
-    let mut settings = Settings::new(radiance_map::PARAMS);
-    for (key, value) in [("points", "1000"), ("directions", "32"), ("paths", "2"), ("lobe-samples", "0")] {
-        settings.set(key, value).expect("a setting");
-    }
-    assert_same(scene, &RadianceMap, &settings);
 }
 
 /// A body that mirrors what a crate hides from the probe, which stands behind that.

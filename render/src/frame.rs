@@ -102,7 +102,7 @@ impl Encoding {
             let scene = &resident.scene;
             let mut used = scene.instances.iter().filter(|instance| instance.visible);
             let traced = used.any(|instance| MetSurface::may_be_smooth(scene, instance.material, look.map.below));
-            (mapped.map.look(gpu, &passes.radiance_map, &look.map, jitter.frame), traced)
+            (mapped.map.look(gpu, &passes.radiance_map, &look.map), traced)
         });
         Encoding {
             map,

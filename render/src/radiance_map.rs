@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::radiance_map::{self, Directions, Look, MetSurface};
+use burnish_core::lighting::radiance_map::{self, Look, MetSurface};
 use burnish_core::scene::Scene;
 use glam::{UVec3, Vec3, Vec4};
 
@@ -16,13 +16,15 @@ use crate::scene::check_size;
 /// Directions of a map, at most: as many as its setting takes.
 const MOST_DIRECTIONS: usize = 1024;
 
+/// Lists of directions, one drawn in each cell: pixels and frames take turns, so that errors of few do not add up over the picture.
+const LISTS: u32 = 256;
+
 /// The map of a preparation: one buffer of words, since shaders read few buffers.
 pub(crate) struct GpuMap {
     pub prepared: Arc<Prepared>,
     pub words: wgpu::Buffer,
     /// Where things are in it; [`GpuMap::data`] adds how they are looked up.
     shape: MapData,
-    directions: Arc<Directions>,
     /// Directions and areas of their cells, for shaders.
     with_areas: wgpu::Buffer,
     /// What the numbers of each group are multiplied by; 0 for those that are dark.
@@ -70,6 +72,13 @@ impl GpuMap {
             let packed: Vec<u32> = light.chunks(2).map(pair).collect();
             firsts[group] = place(&packed);
         }
+        let mut lists: Vec<Vec4> = Vec::with_capacity(LISTS as usize * directions.len());
+        for list in 0..LISTS {
+            // Steps of the plastic number and of the golden ratio.
+            let turn = (list as f32 * Vec3::new(0.754_877_67, 0.569_840_3, 0.618_034)).fract();
+            lists.extend(directions.drawn_all(turn).map(|drawn| drawn.direction.extend(drawn.pdf)));
+        }
+        let drawn = place(bytemuck::cast_slice(&lists));
         // Shaders read a word more than the last.
         place(&[0]);
         check_size(gpu, "radiance map", 4 * words.len() as u64)?;
@@ -92,21 +101,18 @@ impl GpuMap {
             environment: firsts[0],
             lamps: firsts[1],
             glow: firsts[2],
-            pad0: 0,
-            pad1: 0,
+            drawn,
+            lists: LISTS,
         };
         let words = gpu.buffer("radiance map", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
         let with_areas: Vec<Vec4> = (0..directions.len()).map(|k| directions.with_area(k)).collect();
         let with_areas = vectors(gpu, &with_areas);
-        Ok(GpuMap { prepared: prepared.clone(), words, shape, directions, with_areas, scales })
+        Ok(GpuMap { prepared: prepared.clone(), words, shape, with_areas, scales })
     }
 
-    /// Group 3 of a frame: how it is looked up, and directions drawn for all pixels alike, which are others in each frame.
-    pub fn look(&self, gpu: &Gpu, pass: &RadianceMapPass, look: &Look, frame: u32) -> wgpu::BindGroup {
-        // Steps of the plastic number and of the golden ratio.
-        let turn = (frame as f32 * Vec3::new(0.754_877_67, 0.569_840_3, 0.618_034)).fract();
-        let drawn: Vec<Vec4> = self.directions.drawn_all(turn).map(|drawn| drawn.direction.extend(drawn.pdf)).collect();
-        pass.look(gpu, &self.data(look), [&self.with_areas, &vectors(gpu, &drawn)])
+    /// Group 3 of a frame: how it is looked up.
+    pub fn look(&self, gpu: &Gpu, pass: &RadianceMapPass, look: &Look) -> wgpu::BindGroup {
+        pass.look(gpu, &self.data(look), &self.with_areas)
     }
 
     /// What shaders are told of it.

@@ -377,8 +377,8 @@ shared! {
         environment: u32,
         lamps: u32,
         glow: u32,
-        pad0: u32,
-        pad1: u32,
+        drawn: u32,
+        lists: u32,
     }
 }
 

@@ -259,8 +259,8 @@ struct MapData {
     environment: u32,
     lamps: u32,
     glow: u32,
-    pad0: u32,
-    pad1: u32,
+    drawn: u32,
+    lists: u32,
 }
 
 // A material as rays find it, with the means of its textures.

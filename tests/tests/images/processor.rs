@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::job::Handle;
+use burnish_core::lighting::radiance_map::{self, RadianceMap};
 use burnish_core::lighting::{Drawing, Layers, Method, Prepared, Store, area_cube, classical, impostor};
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -45,7 +46,8 @@ pub fn trials() -> Vec<Trial> {
     });
     let layers =
         trial("impostor is the same on device and processor: through two layers", &[Need::Gpu], same_with_layers);
-    classical.chain(impostor).chain(area_cube).chain([layers]).collect()
+    let baked = trial("radiance-map is the same on device and processor", &[Need::Gpu], same_baked);
+    classical.chain(impostor).chain(area_cube).chain([layers, baked]).collect()
 }
 
 /// A rough body in a room, with two probes that fade into each other on it. Of what no probe serves the device has filtered
@@ -60,6 +62,17 @@ fn same_with_probes(method: &'static dyn Method, given: &[(&str, &str)]) {
         settings.set(key, value).expect("a setting");
     }
     assert_same(scene, method, &settings);
+}
+
+/// A rough body in a room whose light was baked.
+fn same_baked() {
+    let scene = gallery::open("room?roughness=0.6").expect("in the gallery");
+    let mut settings = Settings::new(radiance_map::PARAMS);
+    for (key, value) in [("points", "1000"), ("directions", "32"), ("paths", "2"), ("lobe-samples", "0")] {
+        settings.set(key, value).expect("a setting");
+    }
+    // Each side draws directions of its own in the cells, 16 in each: texels have the noise of both.
+    assert_alike(scene, &RadianceMap, &settings, 0.04);
 }
 
 /// A body that mirrors what a crate hides from the probe, which stands behind that.
@@ -102,6 +115,11 @@ pub fn assert_classical_same(scene: Scene, samples: &str) {
 
 /// A scene lit by a method is the same on both; the processor's texels that were compared.
 fn assert_same(scene: Scene, method: &'static dyn Method, settings: &Settings) -> Vec<Vec3> {
+    assert_alike(scene, method, settings, 0.015)
+}
+
+/// Likewise; texels are no farther apart than a share of the mean.
+fn assert_alike(scene: Scene, method: &'static dyn Method, settings: &Settings, most: f32) -> Vec<Vec3> {
     let scene = Arc::new(scene);
     let layers = Layers::of(method, settings.clone());
     let world = World::new(&scene, Options::new(settings));
@@ -118,7 +136,7 @@ fn assert_same(scene: Scene, method: &'static dyn Method, settings: &Settings) -
     let ratio = b / a;
     assert!((ratio - 1.0).abs().max_element() < 0.004, "means {a} and {b}, ratio {ratio}");
     let apart = texels().map(|(a, b)| (a - b).abs().element_sum()).sum::<f32>() / (count * a.element_sum());
-    assert!(apart < 0.015, "texels are {apart} of the mean apart");
+    assert!(apart < most, "texels are {apart} of the mean apart");
     texels().map(|(_, b)| b).collect()
 }
 

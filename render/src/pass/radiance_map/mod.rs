@@ -53,7 +53,7 @@ impl RadianceMapPass {
         });
         let look = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("radiance map look"),
-            entries: &[0, 1, 2].map(|binding| buffer_entry(binding, fragment, wgpu::BufferBindingType::Uniform)),
+            entries: &[0, 1].map(|binding| buffer_entry(binding, fragment, wgpu::BufferBindingType::Uniform)),
         });
         RadianceMapPass {
             device: device.clone(),
@@ -116,11 +116,11 @@ impl RadianceMapPass {
         })
     }
 
-    /// How it is looked up, as group 3; with its directions and those that were drawn.
-    pub(crate) fn look(&self, gpu: &Gpu, data: &MapData, [all, drawn]: [&wgpu::Buffer; 2]) -> wgpu::BindGroup {
+    /// How it is looked up, as group 3, with its directions.
+    pub(crate) fn look(&self, gpu: &Gpu, data: &MapData, directions: &wgpu::Buffer) -> wgpu::BindGroup {
         let buffer = gpu.buffer("radiance map look", bytemuck::bytes_of(data), wgpu::BufferUsages::UNIFORM);
         let entries: Vec<_> = (0..)
-            .zip([&buffer, all, drawn])
+            .zip([&buffer, directions])
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
             .collect();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -9,9 +9,8 @@
 @group(2) @binding(6) var<storage, read> met: array<MetData>;
 @group(2) @binding(7) var<storage, read> map_words: array<u32>;
 @group(3) @binding(0) var<uniform> given: MapData;
-// Directions of the map with the areas of their cells, and one drawn in each cell for this frame with its density.
+// Directions of the map with the areas of their cells.
 @group(3) @binding(1) var<uniform> map_directions: array<vec4f, 1024>;
-@group(3) @binding(2) var<uniform> map_drawn: array<vec4f, 1024>;
 
 // Without it no surface sends rays, and the code that follows them is left out.
 override traced: bool = true;
@@ -61,12 +60,16 @@ fn radiance_map_neighbour(index: u32) -> u32 {
     return map_words[given.neighbours + index];
 }
 
+// Which list of drawn directions a pixel has in a frame.
+var<private> map_list: u32;
+
 fn radiance_map_direction(k: u32) -> vec4f {
     return map_directions[k];
 }
 
 fn radiance_map_drawn(k: u32) -> vec4f {
-    return map_drawn[k];
+    let first = given.drawn + 4u * (map_list * given.directions + k);
+    return vec4f(map_vector(first), bitcast<f32>(map_words[first + 3u]));
 }
 
 // Three halves of a list that begins at a word.
@@ -206,6 +209,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let m = materials[instances[t.id - 1u].material];
     let base = Frame(t.tangent, cross(t.normal, t.tangent), t.normal);
     let seen = radiance_map_seen(surface_of(t, m), base, frame_new(t.coat_normal), t.geometric_normal, to_viewer);
+    // In the frames of a picture it goes through lists far apart.
+    map_list = (sampling_pcg(pixel.x + sampling_pcg(pixel.y)) + view.frame * 81u) % given.lists;
     let turn = sample_rotation(pixel);
     let more = sampling_pcg(bitcast<u32>(turn.x) ^ sampling_pcg(bitcast<u32>(turn.y)));
     let random = vec4f(turn, sampling_unit(more), sampling_unit(sampling_pcg(more)));

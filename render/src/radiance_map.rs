@@ -75,7 +75,7 @@ impl GpuMap {
         let mut lists: Vec<Vec4> = Vec::with_capacity(LISTS as usize * directions.len());
         for list in 0..LISTS {
             // Steps of the plastic number and of the golden ratio.
-            let turn = (list as f32 * Vec3::new(0.754_877_67, 0.569_840_3, 0.618_034)).fract();
+            let turn = (list as f32 * Vec3::new(0.754_877_7, 0.569_840_3, 0.618_034)).fract();
             lists.extend(directions.drawn_all(turn).map(|drawn| drawn.direction.extend(drawn.pdf)));
         }
         let drawn = place(bytemuck::cast_slice(&lists));

@@ -138,7 +138,7 @@ mod tests {
             (axis.from, axis.to, axis.ticks.len())
         };
         assert_eq!(ticks(&[215.0, 470.0]), (200.0, 500.0, 2));
-        assert_eq!(ticks(&[0.41, 45.0]).2, 3, "from 0.2 to 50 are more than two decades");
+        assert_eq!(ticks(&[0.41, 45.0]).2, 2, "from 0.2 to 50 are more than two decades");
         assert_eq!(ticks(&[0.51, 45.0]).2, 7);
         assert_eq!(ticks(&[1e-3, 2.0, f64::NAN, 0.0]).2, 4);
         assert_eq!(ticks(&[10.0]), (10.0, 20.0, 2));

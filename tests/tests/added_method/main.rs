@@ -53,7 +53,7 @@ fn path(file: &Path) -> &str {
 fn listed() {
     assert!(!lighting::register(&Ambient), "it is there");
     let ids: Vec<&str> = lighting::methods().iter().map(|method| method.info().id.0).collect();
-    assert_eq!(ids, ["classical", "impostor", "area-cube", "reference", "ambient"]);
+    assert_eq!(ids, ["classical", "impostor", "area-cube", "radiance-map", "reference", "ambient"]);
 }
 
 fn documented() {

@@ -272,6 +272,35 @@ impl Settings {
         self.iter().find(|(spec, _)| spec.key == key).map(|(_, value)| value)
     }
 
+    /// Value of a setting; its default where it is not in the list.
+    pub fn value(&self, spec: &ParamSpec) -> ParamValue {
+        self.get(spec.key).unwrap_or(spec.default())
+    }
+
+    /// That of a [`ParamKind::Integer`]; 1 where it is none of `u32`.
+    pub fn whole(&self, spec: &ParamSpec) -> u32 {
+        match self.value(spec) {
+            ParamValue::Integer(number) => u32::try_from(number).unwrap_or(1),
+            _ => 1,
+        }
+    }
+
+    /// That of a [`ParamKind::Number`]; 1 for another kind.
+    pub fn number(&self, spec: &ParamSpec) -> f32 {
+        match self.value(spec) {
+            ParamValue::Number(number) => number as f32,
+            _ => 1.0,
+        }
+    }
+
+    /// The place in the options of a [`ParamKind::Choice`]; 0 for another kind.
+    pub fn choice(&self, spec: &ParamSpec) -> usize {
+        match self.value(spec) {
+            ParamValue::Choice(place) => place,
+            _ => 0,
+        }
+    }
+
     /// The word of a [`ParamKind::Choice`], or the number as text.
     pub fn text(&self, key: &str) -> Option<String> {
         let (spec, value) = self.iter().find(|(spec, _)| spec.key == key)?;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use burnish_core::job::Handle;
 use burnish_core::lighting::bakes::{About, Bake};
@@ -14,20 +14,15 @@ use burnish_core::lighting::radiance_map::{self, Shard};
 use burnish_core::lighting::{Method, MethodError};
 use burnish_core::param::Settings;
 use burnish_core::reference::{Options, World};
-use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 
 use super::line::Line;
+use super::saving::Saving;
 use super::stage::{Forms, StageArgs, Staged};
 use super::write_json;
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::value::{self, MethodChoice};
-
-/// Least time between two writings of what is there.
-const INTERVAL: Duration = Duration::from_secs(10);
-/// What takes long to write is written more rarely: it takes at most a part of the time.
-const SHARE: u32 = 20;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -136,9 +131,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let Staged { scene, notices, .. } = stage.set(opened, form_choice(&settings), Forms::OfMaterials)?;
     super::render::tell(err, &notices)?;
 
-    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
-    let pool =
-        pool.map_err(|e| Failure::resources(format!("the threads cannot be started: {e}; give fewer --threads")))?;
+    let pool = super::render::threads(threads)?;
     let (job, start) = (Handle::default(), Instant::now());
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let part = part_of(&file);
@@ -193,8 +186,10 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
             Report { secs: Some(secs), ..Report::of(&bake, &file) }
         }
     };
-    // The whole is there: what was kept of it is not needed.
-    let _ = std::fs::remove_file(&part);
+    if id.0 == radiance_map::ID {
+        // The whole is there: what was kept of it is not needed.
+        let _ = std::fs::remove_file(&part);
+    }
     report.write(json, out)?;
     Ok(Exit::Ok)
 }
@@ -238,9 +233,9 @@ fn baked(
     job: &Handle,
 ) -> Result<Shard, MethodError> {
     // The first blocks show whether it can be written.
-    let mut due = Instant::now();
+    let mut saving = Saving::due();
     let keep = |shard: &Shard| {
-        if Instant::now() < due && !job.is_cancelled() {
+        if !saving.is_due() && !job.is_cancelled() {
             return;
         }
         let start = Instant::now();
@@ -248,7 +243,7 @@ fn baked(
         if let Err(error) = shard.write(part) {
             *unsaved.lock().unwrap_or_else(PoisonError::into_inner) = Some(error.to_string());
         }
-        due = Instant::now() + INTERVAL.max(SHARE * start.elapsed());
+        saving.took(start.elapsed());
     };
     radiance_map::run(world, settings, shard.unwrap_or([1, 1]), begun, keep, job)
 }
@@ -272,9 +267,6 @@ fn failure(method: &dyn Method, error: &MethodError, part: &Path) -> Failure {
                 format!("cancelled; {} keeps what was baked, and the same command goes on from it", part.display());
             Failure { exit: Exit::Cancelled, messages: vec![message] }
         }
-        MethodError::Cancelled => {
-            Failure { exit: Exit::Cancelled, messages: vec!["cancelled; nothing was written".into()] }
-        }
-        MethodError::Unfit(reason) => Failure::resources(format!("--method {}: {reason}", method.info().id)),
+        other => super::render::method_failure(method.info().id, other),
     }
 }

@@ -22,6 +22,7 @@ mod methods;
 pub mod open;
 mod presets;
 mod render;
+mod saving;
 mod snapshot;
 mod stage;
 

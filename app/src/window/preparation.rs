@@ -56,6 +56,7 @@ struct Subject {
 }
 
 /// One that is there.
+#[derive(Clone)]
 struct Held {
     method: MethodId,
     origin: Origin,
@@ -67,15 +68,7 @@ struct Held {
     warnings: Vec<String>,
 }
 
-/// What a job knows of what is held.
-struct Known {
-    origin: Origin,
-    scene: Arc<Scene>,
-    is_draft: bool,
-    prepared: Arc<Prepared>,
-}
-
-impl Known {
+impl Held {
     /// It stays in use for a scene of another origin.
     fn outlives(&self, method: &dyn Method, other: &Origin) -> bool {
         let outlived = method.outlives().parts();
@@ -142,7 +135,7 @@ impl Subject {
     /// Compares what is held by `known` with the subject; makes another as `wanted`.
     fn work(
         &self,
-        known: Option<Known>,
+        known: Option<Held>,
         wanted: Wanted,
         store: &Store,
         world: &Mutex<Option<World>>,
@@ -285,11 +278,7 @@ impl Preparation {
             (self.job, self.held, self.state) = (None, None, Some(State::Needless));
             return;
         }
-        let known = self.held.as_ref().map(|held| {
-            let Held { origin, scene, is_draft, prepared, .. } = held;
-            Known { origin: origin.clone(), scene: scene.clone(), is_draft: *is_draft, prepared: prepared.clone() }
-        });
-        let (store, ctx) = (self.store.clone(), ctx.clone());
+        let (known, store, ctx) = (self.held.clone(), self.store.clone(), ctx.clone());
         self.is_whole = wanted == Wanted::Whole && subject.method.drafts();
         let world = self.world.clone();
         let label = format!("Preparing {}", subject.method.info().title);

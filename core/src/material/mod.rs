@@ -1,6 +1,7 @@
 //! Materials: what a surface is made of, before textures are looked up.
 
 pub mod finish;
+mod looked;
 pub mod params;
 pub mod preset;
 mod reflection;
@@ -15,6 +16,7 @@ use crate::surface::fresnel::Fresnel;
 use crate::surface::layered::Lobe;
 use crate::surface::{blinn_phong, micro_normal};
 
+pub use looked::Looked;
 pub use reflection::ReflectionModel;
 pub use texture::TextureRole;
 

@@ -5,11 +5,11 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use super::texture::{Coordinates, between, lookup};
 use super::waves::Waves;
 use super::world::World;
-use crate::material::{Material, Reflectance};
+use crate::material::{Looked, Material, Reflectance};
 use crate::math::frame::Frame;
 use crate::surface::fresnel::{Fresnel, schlick_mean};
 use crate::surface::layered::{Lobe, Surface};
-use crate::surface::{dielectric, micro_normal};
+use crate::surface::micro_normal;
 use crate::trace::{Hit, rounding};
 
 /// A point that a ray met.
@@ -182,14 +182,8 @@ impl<'a> Point<'a> {
 impl<'a> Parts<'a> {
     fn new(world: &'a World, triangle: &Triangle, m: &'a Material, at: &Coordinates, waves: Waves) -> Parts<'a> {
         let look = |texture, color| lookup(world.scene(), texture, at, color).unwrap_or(Vec4::ONE);
-        let rough = look(m.metallic_roughness_texture, false);
-        let color = m.base_color * triangle.color().xyz() * look(m.base_color_texture, true).xyz();
-        let roughness = (m.roughness * rough.y).clamp(0.0, 1.0);
-        let coat_roughness = (m.coat_roughness * look(m.coat_roughness_texture, false).y).clamp(0.0, 1.0);
-        let strength = (m.anisotropy * look(m.anisotropy_texture, false).z).clamp(0.0, 1.0);
-        let along = roughness * roughness + (1.0 - roughness * roughness) * strength * strength;
-        let weight = (m.specular * look(m.specular_texture, false).w).clamp(0.0, 1.0);
-        let tint = m.specular_color * look(m.specular_color_texture, true).xyz();
+        let Looked { color, metallic, alpha, dielectric_f0, dielectric_f90, coat, coat_alpha } =
+            Looked::new(m, triangle.color().xyz(), look);
         // An unlit surface shows its colour as it is.
         let base_color = waves.of_rgb(if m.unlit { color } else { color.clamp(Vec3::ZERO, Vec3::ONE) });
         let rescaled = |f0| (Fresnel::Rescaled { f0 }, schlick_mean(f0, 1.0));
@@ -207,18 +201,17 @@ impl<'a> Parts<'a> {
             }
             (Reflectance::Preset { fresnel, .. }, ..) => Some((&**fresnel, world.fresnel_mean(triangle.hit.instance))),
         };
-        let is_metal = matches!(m.reflectance, Reflectance::Preset { .. });
         Parts {
             base_color,
-            metallic: if is_metal { 1.0 } else { (m.metallic * rough.z).clamp(0.0, 1.0) },
-            alpha: m.lobe().alpha(Vec2::new(along, roughness * roughness)),
+            metallic,
+            alpha,
             lobe: m.lobe(),
             preset,
             own,
-            dielectric_f0: waves.of_rgb(dielectric::f0(m.ior, weight, tint)),
-            dielectric_f90: weight,
-            coat: (m.coat * look(m.coat_texture, false).x).clamp(0.0, 1.0),
-            coat_alpha: coat_roughness * coat_roughness,
+            dielectric_f0: waves.of_rgb(dielectric_f0),
+            dielectric_f90,
+            coat,
+            coat_alpha,
         }
     }
 

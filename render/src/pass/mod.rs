@@ -90,6 +90,20 @@ pub(crate) fn attachment(
     })
 }
 
+/// A target to which a pass adds.
+pub(crate) fn added(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    let sum = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    wgpu::ColorTargetState {
+        format,
+        blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
+        write_mask: wgpu::ColorWrites::ALL,
+    }
+}
+
 /// Pipeline of a pass that covers the target with one triangle.
 pub(crate) fn fullscreen_pipeline(
     device: &wgpu::Device,

@@ -22,6 +22,9 @@ use glam::UVec2;
 use classical::ClassicalArgs;
 use reference::ReferenceArgs;
 
+pub use points::method_failure;
+pub use reference::threads;
+
 use super::stage::{self, StageArgs};
 use crate::failure::{Exit, Failure, printable};
 use crate::source::Opened;

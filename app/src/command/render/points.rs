@@ -101,7 +101,8 @@ fn world_settings(lighting: &LightingEntry, of_method: &Settings) -> Settings {
     world
 }
 
-fn method_failure(id: MethodId, error: &MethodError) -> Failure {
+/// Why a method could not prepare.
+pub fn method_failure(id: MethodId, error: &MethodError) -> Failure {
     match error {
         MethodError::Cancelled => cancelled(),
         MethodError::Unfit(reason) => Failure::resources(format!("--method {id}: {reason}")),

@@ -109,11 +109,15 @@ impl ReferenceArgs {
 
     /// The threads.
     pub fn pool(&self) -> Result<ThreadPool, Failure> {
-        // Zero stands for one for each core.
-        let threads = self.threads.unwrap_or(0).into();
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map_err(|e| Failure::resources(format!("the threads cannot be started: {e}; give fewer --threads")))
+        threads(self.threads)
     }
+}
+
+/// The threads of `--threads`.
+pub fn threads(given: Option<u16>) -> Result<ThreadPool, Failure> {
+    // Zero stands for one for each core.
+    let pool = ThreadPoolBuilder::new().num_threads(given.unwrap_or(0).into()).build();
+    pool.map_err(|e| Failure::resources(format!("the threads cannot be started: {e}; give fewer --threads")))
 }
 
 pub fn run(

@@ -14,17 +14,12 @@ use burnish_core::reference::{Control, End, Film, Goal, Pacing, Pass, Step, View
 use rayon::ThreadPool;
 
 use crate::command::line::Line;
+use crate::command::saving::Saving;
 use crate::failure::Failure;
 use crate::interrupt;
 
 /// How often signals and progress are looked at.
 const POLL: Duration = Duration::from_millis(50);
-
-/// Least time between two checkpoints.
-const INTERVAL: Duration = Duration::from_secs(10);
-
-/// A checkpoint that takes long is written more rarely: it takes at most a part of the time.
-const SHARE: u32 = 20;
 
 /// What is traced, and how far.
 pub struct Tracing<'a> {
@@ -49,7 +44,7 @@ pub struct Traced {
 pub struct Store {
     path: PathBuf,
     key: Key,
-    due: Instant,
+    saving: Saving,
     /// Samples that the file holds.
     held: Option<u32>,
 }
@@ -57,12 +52,12 @@ pub struct Store {
 impl Store {
     /// A file that is not there yet: the first pass shows whether it can be written.
     pub fn new(path: &Path, key: Key) -> Store {
-        Store { path: path.into(), key, due: Instant::now(), held: None }
+        Store { path: path.into(), key, saving: Saving::due(), held: None }
     }
 
     /// A file that was just read.
     pub fn resumed(path: &Path, key: Key) -> Store {
-        Store { due: Instant::now() + INTERVAL, ..Store::new(path, key) }
+        Store { saving: Saving::later(), ..Store::new(path, key) }
     }
 
     fn write(&mut self, film: &Film) -> Result<(), FileError> {
@@ -72,7 +67,7 @@ impl Store {
         }
         let start = Instant::now();
         let written = checkpoint::write(&self.path, film, &self.key);
-        self.due = Instant::now() + INTERVAL.max(SHARE * start.elapsed());
+        self.saving.took(start.elapsed());
         written.map(|()| self.held = Some(film.samples()))
     }
 }
@@ -143,7 +138,7 @@ impl Tracing<'_> {
             seen.pacing.took(samples, took);
             (seen.samples, seen.error, seen.ahead) = (film.samples(), error, 0);
             drop(seen);
-            if let Some(store) = store.as_mut().filter(|store| Instant::now() >= store.due)
+            if let Some(store) = store.as_mut().filter(|store| store.saving.is_due())
                 && let Err(error) = store.write(&film)
             {
                 // The picture is worth more than its checkpoint; nobody listens when all is over.

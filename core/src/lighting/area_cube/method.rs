@@ -12,7 +12,7 @@ use crate::lighting::impostor::{self, Effort, Solver};
 use crate::lighting::probe::{self, Probe, Probes, Sites};
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use crate::math::frame::Frame;
-use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::param::{Affects, ParamKind, ParamSpec, Settings};
 use crate::reference::{SurfacePoint, World};
 use crate::scene::Scene;
 
@@ -162,10 +162,7 @@ fn coarse(probe: &Probe<'_>) -> Vec<f32> {
 
 /// Texels along an edge of a face, from settings made of [`PARAMS`].
 pub fn edge(settings: &Settings) -> u32 {
-    match settings.get(TEXELS.key) {
-        Some(ParamValue::Choice(index)) => EDGES.get(index).copied().unwrap_or(EDGES[1]),
-        _ => EDGES[1],
-    }
+    EDGES.get(settings.choice(&TEXELS)).copied().unwrap_or(EDGES[1])
 }
 
 /// What is asked of them, likewise.

@@ -11,7 +11,7 @@ use crate::job::Handle;
 use crate::lighting::classical::{self, FrameSettings, Lobes, Maps, MeanFresnel, PreparedMaps, Source, environment};
 use crate::lighting::probe::{self, Defaults, Probe, Probes, Sites};
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
-use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::param::{Affects, ParamKind, ParamSpec, Settings};
 use crate::reference::{SurfacePoint, World};
 use crate::scene::Scene;
 
@@ -165,37 +165,23 @@ impl Method for Impostor {
 
 /// The probes of a scene, from settings made of [`PARAMS`].
 pub fn sites(scene: &Scene, settings: &Settings) -> Sites {
-    let [face, paths, layers] = [RESOLUTION, PATHS, LAYERS].map(|spec| whole(settings, &spec));
+    let [face, paths, layers] = [RESOLUTION, PATHS, LAYERS].map(|spec| settings.whole(&spec));
     Sites::new(scene, Defaults { face, paths, layers })
-}
-
-/// A whole number of the settings.
-fn whole(settings: &Settings, spec: &ParamSpec) -> u32 {
-    match settings.get(spec.key).unwrap_or(spec.default()) {
-        ParamValue::Integer(number) => u32::try_from(number).unwrap_or(1),
-        _ => 1,
-    }
 }
 
 /// How rays are followed, from settings made of [`PARAMS`].
 pub fn effort(settings: &Settings) -> Effort {
-    let solver = match settings.get(SOLVER.key) {
-        Some(ParamValue::Choice(index)) => Solver::ALL.get(index).copied().unwrap_or_default(),
-        _ => Solver::default(),
-    };
-    let tolerance = match settings.get(TOLERANCE.key).unwrap_or(TOLERANCE.default()) {
-        ParamValue::Number(number) => number as f32,
-        _ => 0.05,
-    };
-    Effort { solver, refinements: whole(settings, &REFINEMENTS), steps: whole(settings, &STEPS), tolerance }
+    Effort {
+        solver: Solver::ALL.get(settings.choice(&SOLVER)).copied().unwrap_or_default(),
+        refinements: settings.whole(&REFINEMENTS),
+        steps: settings.whole(&STEPS),
+        tolerance: settings.number(&TOLERANCE),
+    }
 }
 
 /// What is shown, from settings made of [`PARAMS`].
 pub fn show(settings: &Settings) -> Show {
-    match settings.get(SHOW.key) {
-        Some(ParamValue::Choice(index)) => Show::ALL.get(index).copied().unwrap_or_default(),
-        _ => Show::default(),
-    }
+    Show::ALL.get(settings.choice(&SHOW)).copied().unwrap_or_default()
 }
 
 impl ShadePoint for Impostor {

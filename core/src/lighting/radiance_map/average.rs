@@ -7,7 +7,8 @@ use glam::Vec3;
 use half::f16;
 
 use super::bake::{GROUPS, Group, ordered};
-use super::method::{ID, baked_directions};
+use super::method::ID;
+use super::settings::baked_directions;
 use crate::file::FileError;
 use crate::lighting::bakes::{About, Bake};
 
@@ -101,11 +102,12 @@ fn mean(files: &[(PathBuf, Bake)], weights: &[f32]) -> Option<crate::lighting::P
         if scale <= 0.0 {
             continue;
         }
+        let halves: Vec<&[f16]> = bakes.iter().map(|bake| bake.halves(group)).collect();
         let mut light = Vec::with_capacity(kept.len() * numbers);
         for at in &kept {
             for i in 0..numbers {
                 let of = |(bake, place): (usize, &usize)| {
-                    let half = bakes[bake].halves(group).get(place * numbers + i).copied().unwrap_or_default();
+                    let half = halves[bake].get(place * numbers + i).copied().unwrap_or_default();
                     weights[bake] / total * (scales[bake] / scale) * half.to_f32()
                 };
                 light.push(f16::from_f32(at.iter().enumerate().map(of).sum()));

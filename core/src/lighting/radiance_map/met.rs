@@ -2,10 +2,9 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::material::{Reflectance, TextureRef};
+use crate::material::{Looked, TextureRef};
 use crate::reference::mean_texel;
 use crate::scene::Scene;
-use crate::surface::dielectric;
 
 /// A material with the means of its textures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,25 +32,11 @@ impl MetSurface {
     pub fn of(scene: &Scene, material: usize) -> MetSurface {
         let m = &scene.materials[material];
         let mean = |texture: Option<TextureRef>, color| mean_texel(scene, texture, color).unwrap_or(Vec4::ONE);
-        let rough = mean(m.metallic_roughness_texture, false);
-        let color = m.base_color * mean(m.base_color_texture, true).xyz();
-        let squared = |roughness: f32| roughness.clamp(0.0, 1.0).powi(2);
-        let across = squared(m.roughness * rough.y);
-        let strength = (m.anisotropy * mean(m.anisotropy_texture, false).z).clamp(0.0, 1.0);
-        let along = across + (1.0 - across) * strength * strength;
-        let weight = (m.specular * mean(m.specular_texture, false).w).clamp(0.0, 1.0);
-        let tint = m.specular_color * mean(m.specular_color_texture, true).xyz();
-        let is_metal = matches!(m.reflectance, Reflectance::Preset { .. });
-        let lit = MetSurface {
-            base_color: color.clamp(Vec3::ZERO, Vec3::ONE),
-            metallic: if is_metal { 1.0 } else { (m.metallic * rough.z).clamp(0.0, 1.0) },
-            alpha: m.lobe().alpha(Vec2::new(along, across)),
-            emission: m.emission * mean(m.emission_texture, true).xyz(),
-            dielectric_f0: dielectric::f0(m.ior, weight, tint),
-            dielectric_f90: weight,
-            coat: (m.coat * mean(m.coat_texture, false).x).clamp(0.0, 1.0),
-            coat_alpha: squared(m.coat_roughness * mean(m.coat_roughness_texture, false).y),
-        };
+        let Looked { color, metallic, alpha, dielectric_f0, dielectric_f90, coat, coat_alpha } =
+            Looked::new(m, Vec3::ONE, mean);
+        let emission = m.emission * mean(m.emission_texture, true).xyz();
+        let base_color = color.clamp(Vec3::ZERO, Vec3::ONE);
+        let lit = MetSurface { base_color, metallic, alpha, emission, dielectric_f0, dielectric_f90, coat, coat_alpha };
         if !m.unlit {
             return lit;
         }

@@ -1,21 +1,20 @@
 //! The method: sums over the directions of the map and over directions drawn from the surface, weighed against each other.
 
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, PoisonError, RwLock};
+use std::sync::Arc;
 
 use glam::{UVec3, Vec3};
 use half::f16;
 
-use super::bake::{Asked, GROUPS, age};
-use super::directions::{Directions, FEWEST, Spread};
-use super::near::{self, Filter, Grid, Near, SET};
+use super::bake::{GROUPS, age};
+use super::directions::{Directions, Spread};
+use super::near::{self, Grid, Near, SET};
 use super::run::run;
+use super::settings::{self, DRAFT_DIRECTIONS, Look, PARAMS, baked_directions};
 use super::shards;
 use crate::job::Handle;
-use crate::lighting::classical;
 use crate::lighting::{Cover, Coverage, Method, MethodError, MethodId, MethodInfo, Prepared, Reads, ShadePoint};
 use crate::math::sampling::{pcg, unit};
-use crate::param::{Affects, ParamKind, ParamSpec, ParamValue, Settings};
+use crate::param::Settings;
 use crate::reference::{SurfacePoint, World};
 
 /// Id of the method, as documents name it.
@@ -24,140 +23,6 @@ pub const ID: &str = "radiance-map";
 /// The method as others see it.
 #[derive(Debug)]
 pub struct RadianceMap;
-
-const POINTS: ParamSpec = ParamSpec {
-    key: "points",
-    label: "Points",
-    unit: "",
-    kind: ParamKind::Integer { min: 64, max: 4_000_000, default: 10_000 },
-    help: "Places on surfaces of which light is kept, spread by area.",
-    affects: Affects::Prepare,
-};
-
-const DIRECTIONS: ParamSpec = ParamSpec {
-    key: "directions",
-    label: "Directions",
-    unit: "per point",
-    kind: ParamKind::Integer { min: FEWEST as i64, max: 1024, default: 64 },
-    help: "Directions from which light is kept, the same for all points.",
-    affects: Affects::Prepare,
-};
-
-const PATHS: ParamSpec = ParamSpec {
-    key: "paths",
-    label: "Paths",
-    unit: "per direction",
-    kind: ParamKind::Integer { min: 1, max: 65_536, default: 8 },
-    help: "Paths that are traced for each direction of each point.",
-    affects: Affects::Prepare,
-};
-
-const SPREAD: ParamSpec = ParamSpec {
-    key: "spread",
-    label: "Spread",
-    unit: "",
-    kind: ParamKind::Choice { options: &Spread::IDS, default: 0 },
-    help: "How directions are spread over the sphere.",
-    affects: Affects::Prepare,
-};
-
-const SEED: ParamSpec = ParamSpec {
-    key: "seed",
-    label: "Seed",
-    unit: "",
-    kind: ParamKind::Integer { min: 0, max: u32::MAX as i64, default: 0 },
-    help: "Chooses the random numbers of the paths.",
-    affects: Affects::Prepare,
-};
-
-const LOBE_SAMPLES: ParamSpec = ParamSpec {
-    key: "lobe-samples",
-    label: "Lobe samples",
-    unit: "per frame",
-    kind: ParamKind::Integer { min: 0, max: 64, default: 1 },
-    help: "Directions drawn from the surface beside those of the map: without them narrow highlights fall between these.",
-    affects: Affects::Frame,
-};
-
-const TRACE_BELOW: ParamSpec = ParamSpec {
-    key: "trace-below",
-    label: "Trace below",
-    unit: "roughness",
-    kind: ParamKind::Number { min: 0.0, max: 1.0, default: 0.25 },
-    help: "Smoother surfaces trace rays and take the map where these end.",
-    affects: Affects::Frame,
-};
-
-const INTERPOLATION: ParamSpec = ParamSpec {
-    key: "interpolation",
-    label: "Interpolation",
-    unit: "",
-    kind: ParamKind::Choice { options: &["nearest", "smooth"], default: 0 },
-    help: "How light is looked up between the directions of the map. smooth hides the cells in glossy metals, and takes light off \
-           matt surfaces that face it.",
-    affects: Affects::Frame,
-};
-
-const FILTER: ParamSpec = ParamSpec {
-    key: "filter",
-    label: "Filter",
-    unit: "",
-    kind: ParamKind::Choice { options: &["hat", "box"], default: 0 },
-    help: "How places around a point are weighed: a hat over their distance, or all of them the same.",
-    affects: Affects::Frame,
-};
-
-const GUARDS: ParamSpec = ParamSpec {
-    key: "guards",
-    label: "Guards",
-    unit: "",
-    kind: ParamKind::Choice { options: &["on", "off"], default: 0 },
-    help: "Places whose surface faces elsewhere, or lies off the plane of a point, do not light it. off shows what leaks without.",
-    affects: Affects::Frame,
-};
-
-const fn strength(key: &'static str, label: &'static str, help: &'static str) -> ParamSpec {
-    ParamSpec {
-        key,
-        label,
-        unit: "",
-        kind: ParamKind::Number { min: 0.0, max: 1000.0, default: 1.0 },
-        help,
-        affects: Affects::Frame,
-    }
-}
-
-const STRENGTHS: [ParamSpec; 3] = [
-    strength("environment-strength", "Environment", "Factor on the light of the environment, without another bake."),
-    strength(
-        "lamps-strength",
-        "Lamps",
-        "Factor on the light of lamps that comes over other surfaces, without another bake.",
-    ),
-    strength("glow-strength", "Glow", "Factor on the light of what glows, without another bake."),
-];
-
-/// Settings of this method: the last are those of `classical`, but for its samples.
-pub const PARAMS: &[ParamSpec] = &[
-    POINTS,
-    DIRECTIONS,
-    PATHS,
-    SPREAD,
-    SEED,
-    LOBE_SAMPLES,
-    TRACE_BELOW,
-    INTERPOLATION,
-    FILTER,
-    GUARDS,
-    STRENGTHS[0],
-    STRENGTHS[1],
-    STRENGTHS[2],
-    classical::PARAMS[1],
-    classical::PARAMS[2],
-    classical::PARAMS[3],
-    classical::PARAMS[4],
-    classical::PARAMS[5],
-];
 
 static INFO: MethodInfo = MethodInfo {
     id: MethodId(ID),
@@ -192,11 +57,7 @@ impl Method for RadianceMap {
 
     /// With places and paths for a part of a second.
     fn draft(&self, world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
-        let coarse = |spec: &ParamSpec, most: u32| whole(settings, spec).min(most).to_string();
-        let mut draft = settings.clone();
-        for (spec, most) in [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1)] {
-            draft.set(spec.key, &coarse(spec, most)).map_err(|e| MethodError::Unfit(e.to_string()))?;
-        }
+        let draft = settings::draft(settings).map_err(|e| MethodError::Unfit(e.to_string()))?;
         self.prepare(world, &draft, job)
     }
 
@@ -205,100 +66,13 @@ impl Method for RadianceMap {
     }
 
     fn age(&self, then: &World, now: &World, settings: &Settings) -> Option<f32> {
-        age(then, now, &directions(Spread::Fibonacci, DRAFT_DIRECTIONS), asked(settings).seed)
+        let few = settings::directions(Spread::Fibonacci, DRAFT_DIRECTIONS);
+        age(then, now, &few, settings::asked(settings).seed)
     }
 
     fn points(&self) -> Option<&dyn ShadePoint> {
         Some(self)
     }
-}
-
-/// What is baked, from settings made of [`PARAMS`].
-pub(super) fn asked(settings: &Settings) -> Asked {
-    let [points, paths, seed] = [POINTS, PATHS, SEED].map(|spec| whole(settings, &spec));
-    Asked { points, paths, seed }
-}
-
-fn whole(settings: &Settings, spec: &ParamSpec) -> u32 {
-    match settings.get(spec.key).unwrap_or(spec.default()) {
-        ParamValue::Integer(number) => u32::try_from(number).unwrap_or(1),
-        _ => 1,
-    }
-}
-
-fn number(settings: &Settings, spec: &ParamSpec) -> f32 {
-    match settings.get(spec.key).unwrap_or(spec.default()) {
-        ParamValue::Number(number) => number as f32,
-        _ => 1.0,
-    }
-}
-
-fn is_choice(settings: &Settings, spec: &ParamSpec, place: usize) -> bool {
-    settings.get(spec.key).unwrap_or(spec.default()) == ParamValue::Choice(place)
-}
-
-/// How a map is looked up, from settings made of [`PARAMS`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
-    /// Directions drawn from the surface.
-    pub lobes: u32,
-    /// Width of the lobe below which rays are traced.
-    pub below: f32,
-    /// Light is interpolated between directions.
-    pub smooth: bool,
-    /// Which places count.
-    pub filter: Filter,
-    /// Factors on the light of each of [`GROUPS`].
-    pub strengths: [f32; 3],
-}
-
-impl Look {
-    /// That of settings.
-    pub fn new(settings: &Settings) -> Look {
-        Look {
-            lobes: whole(settings, &LOBE_SAMPLES),
-            below: number(settings, &TRACE_BELOW).powi(2),
-            smooth: is_choice(settings, &INTERPOLATION, 1),
-            filter: filter(settings),
-            strengths: STRENGTHS.map(|spec| number(settings, &spec)),
-        }
-    }
-}
-
-/// How places are weighed, from settings made of [`PARAMS`].
-fn filter(settings: &Settings) -> Filter {
-    Filter { box_shaped: is_choice(settings, &FILTER, 1), unguarded: is_choice(settings, &GUARDS, 1) }
-}
-
-/// Directions, made once for all who ask.
-fn directions(spread: Spread, count: u32) -> Arc<Directions> {
-    type Made = HashMap<(Spread, u32), Arc<Directions>>;
-    static MADE: LazyLock<RwLock<Made>> = LazyLock::new(RwLock::default);
-    let key = (spread, count);
-    if let Some(made) = MADE.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
-        return made.clone();
-    }
-    let made = Arc::new(Directions::new(spread, count));
-    MADE.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_insert(made).clone()
-}
-
-/// Those of the texts of settings; `None` where these are not understood.
-pub(super) fn directions_of_texts(spread: &str, count: &str) -> Option<Arc<Directions>> {
-    let spread = Spread::IDS.iter().position(|id| *id == spread)?;
-    let count: u32 = count.parse().ok()?;
-    DIRECTIONS.accepts(ParamValue::Integer(count.into())).then(|| directions(Spread::ALL[spread], count))
-}
-
-/// Those of settings made of [`PARAMS`].
-pub(super) fn asked_directions(settings: &Settings) -> Arc<Directions> {
-    let spread = if is_choice(settings, &SPREAD, 1) { Spread::Halton } else { Spread::Fibonacci };
-    directions(spread, whole(settings, &DIRECTIONS))
-}
-
-/// Those of a map; `None` where there is no map.
-pub fn baked_directions(prepared: &Prepared) -> Option<Arc<Directions>> {
-    let [spread, count] = *prepared.whole("directions") else { return None };
-    Some(directions(*Spread::ALL.get(spread as usize)?, count))
 }
 
 /// What was baked, ready for lookups.
@@ -380,10 +154,6 @@ impl<'a> Map<'a> {
         if weights > 0.0 { sum / weights } else { light[self.directions.nearest(direction)] }
     }
 }
-
-/// Places and directions of a draft, at most.
-const DRAFT_POINTS: u32 = 2000;
-const DRAFT_DIRECTIONS: u32 = 32;
 
 /// Bounces between smooth surfaces that are traced.
 pub const MOST_MIRRORS: u32 = 4;

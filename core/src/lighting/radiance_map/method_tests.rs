@@ -136,6 +136,8 @@ fn a_map_knows_its_directions_and_what_is_no_map_is_not_used() {
     let map = Map::of(&prepared, &settings(&[])).unwrap();
     assert_eq!((map.directions.len(), map.directions.spread()), (18, Spread::Fibonacci));
     assert!(Map::of(&Prepared::nothing(), &settings(&[])).is_none());
+    let many = Prepared::nothing().with("directions", vec![0, u32::MAX]);
+    assert!(Map::of(&many, &settings(&[])).is_none(), "more directions than any bake has");
     // Cut short.
     let cut = prepared.halves(GROUPS[2])[3..].to_vec();
     assert!(Map::of(&Prepared::nothing().with(GROUPS[2], cut), &settings(&[])).is_none());

@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::bake::{Asked, Baker, Block};
-use super::method::{RadianceMap, asked, asked_directions};
+use super::method::RadianceMap;
+use super::settings::{asked, asked_directions};
 use super::shards::{Shard, ShardAbout};
 use crate::job::Handle;
 use crate::lighting::MethodError;
@@ -32,10 +33,7 @@ pub fn run(
     let origin = Origin::of(&RadianceMap, settings, world.scene());
     let about = ShardAbout { origin, shard, area: baker.area(), blocks: baker.blocks() };
     let mut done = begun.filter(|begun| begun.about == about).unwrap_or(Shard { about, blocks: Vec::new() });
-    let missing: Vec<u32> = {
-        let known = |index: &u32| done.blocks.binary_search_by_key(index, |block| block.index).is_ok();
-        done.about.own().filter(|index| !known(index)).collect()
-    };
+    let missing = done.missing();
     let all = done.about.own().count().max(1);
     let finished = AtomicUsize::new(all - missing.len().min(all));
     for some in missing.chunks(AT_ONCE * rayon::current_num_threads().max(1)) {

@@ -160,7 +160,7 @@ fn bakes_of_other_seeds_make_a_mean_with_less_noise_and_the_noise_is_known() {
     }
     // Irradiance up to a factor, of each place.
     let irradiance = |bake: &Bake| -> Vec<f32> {
-        let directions = super::super::method::baked_directions(&bake.prepared).unwrap();
+        let directions = super::super::settings::baked_directions(&bake.prepared).unwrap();
         let (light, normals) = (light(bake), &bake.prepared);
         let of = |(place, light): (usize, &[f32])| -> f32 {
             let normal = normals.vector("normals", place);

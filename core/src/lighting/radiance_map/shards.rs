@@ -51,6 +51,12 @@ impl ShardAbout {
 }
 
 impl Shard {
+    /// Blocks that belong to it and are not there.
+    pub(super) fn missing(&self) -> Vec<u32> {
+        let is_there = |index: &u32| self.blocks.binary_search_by_key(index, |block| block.index).is_ok();
+        self.about.own().filter(|index| !is_there(index)).collect()
+    }
+
     /// Rays that were cast for it.
     pub fn rays(&self) -> u64 {
         self.blocks.iter().map(|block| u64::from(block.rays)).sum()
@@ -163,7 +169,7 @@ impl Arrays {
 
 /// The directions that settings ask for.
 pub fn directions_of(origin: &Origin) -> Option<Arc<Directions>> {
-    super::method::directions_of_texts(origin.settings.get("spread")?, origin.settings.get("directions")?)
+    super::settings::directions_of_texts(origin.settings.get("spread")?, origin.settings.get("directions")?)
 }
 
 /// All blocks of a bake, from shards in any order: the same bytes, however it was shared out. Every fault is told with its file.
@@ -194,8 +200,7 @@ pub fn merge(files: &[(PathBuf, Shard)]) -> Result<Bake, Vec<FileError>> {
         }
     }
     for (path, shard) in files {
-        let missing: Vec<u32> =
-            shard.about.own().filter(|own| shard.blocks.iter().all(|block| block.index != *own)).collect();
+        let missing = shard.missing();
         if let Some(some) = missing.first() {
             let [which, of] = shard.about.shard;
             let reason = format!("lacks {} of its blocks, such as {some}: it was not finished", missing.len());

@@ -8,7 +8,7 @@ use crate::device::Gpu;
 use crate::layout::types::{AREA_CUBE_CORRECTED, AREA_CUBE_FEW, AREA_CUBE_MIDDLES, AREA_CUBE_NORMALIZED, EffortData};
 use crate::pass::classical::frame_constants;
 use crate::pass::environment::{cube_sampler, cube_view};
-use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
+use crate::pass::{added, attachment, buffer_entry, fullscreen_pipeline, texture_entry};
 use crate::probes::{GpuProbe, ProbeLook};
 use crate::shader;
 use crate::trace::TraceTree;
@@ -113,17 +113,7 @@ impl ProbePass {
         constants: &[(&str, f64)],
     ) -> wgpu::RenderPipeline {
         let layouts = [&self.scene_layout, &self.gbuffer_layout, &self.probe_layout, last].map(Some);
-        let sum = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let target = wgpu::ColorTargetState {
-            format: self.format,
-            blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-            write_mask: wgpu::ColorWrites::ALL,
-        };
-        fullscreen_pipeline(&self.device, "probe", &layouts, module, target, constants)
+        fullscreen_pipeline(&self.device, "probe", &layouts, module, added(self.format), constants)
     }
 
     /// A probe as group 2.

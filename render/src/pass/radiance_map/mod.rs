@@ -7,7 +7,7 @@ use crate::layout::types::MapData;
 use crate::pass::classical::frame_constants;
 use crate::pass::environment::{EnvironmentMaps, cube_sampler, cube_view};
 use crate::pass::shadow::Shadows;
-use crate::pass::{attachment, buffer_entry, fullscreen_pipeline, texture_entry};
+use crate::pass::{added, attachment, buffer_entry, fullscreen_pipeline, texture_entry};
 use crate::radiance_map::GpuMap;
 use crate::shader;
 
@@ -70,18 +70,8 @@ impl RadianceMapPass {
             let module = self.module.get_or_init(|| shader::RADIANCE_MAP.module(&self.device));
             let mut constants = frame_constants(self.format);
             constants.push(("traced", f64::from(u8::from(traced))));
-            let sum = wgpu::BlendComponent {
-                src_factor: wgpu::BlendFactor::One,
-                dst_factor: wgpu::BlendFactor::One,
-                operation: wgpu::BlendOperation::Add,
-            };
-            let target = wgpu::ColorTargetState {
-                format: self.format,
-                blend: Some(wgpu::BlendState { color: sum, alpha: sum }),
-                write_mask: wgpu::ColorWrites::ALL,
-            };
             let layouts = self.layouts.each_ref().map(Some);
-            fullscreen_pipeline(&self.device, "radiance map", &layouts, module, target, &constants)
+            fullscreen_pipeline(&self.device, "radiance map", &layouts, module, added(self.format), &constants)
         })
     }
 

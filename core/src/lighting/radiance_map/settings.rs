@@ -173,7 +173,7 @@ pub struct Look {
     pub smooth: bool,
     /// Which places count.
     pub filter: Filter,
-    /// Factors on the light of each of [`GROUPS`].
+    /// Factors on the light of each of [`super::GROUPS`].
     pub strengths: [f32; 3],
 }
 

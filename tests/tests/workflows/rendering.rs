@@ -126,7 +126,7 @@ pub fn readme_examples_run() {
     for example in examples.iter().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase())) {
         let mut args: Vec<String> = example.split_whitespace().map(String::from).collect();
         let is_file = |arg: &str| {
-            ["png", "exr", "glb", "hdr", "html", "csv", "svg", "json", "checkpoint"]
+            ["png", "exr", "glb", "hdr", "html", "csv", "svg", "json", "checkpoint", "bake", "shard"]
                 .iter()
                 .any(|end| arg.ends_with(&format!(".{end}")))
         };

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::{self, MethodId};
-use burnish_core::measure::bench::{BenchError, Cache, PathTimer, PointTimer, Rig, Shot, Tools, Truth};
+use burnish_core::measure::bench::{BenchError, Cache, FrameTimer, PathTimer, PointTimer, Rig, Shot, Tools, Truth};
 use burnish_core::param::Settings;
 use burnish_core::reference::{self, Control};
 use burnish_render::device::{ACCEPTED, choose};
@@ -14,22 +14,28 @@ use eframe::wgpu;
 use crate::interrupt;
 
 /// A timer for every method of the program; `control` ends what they draw. The adapter is only looked for: it is opened
-/// when something must be drawn on it, and never where all is known.
-pub fn rig(control: &Control) -> Result<Rig<'static>, BenchError> {
+/// when something must be drawn on it, and never where all is known. With `processor` that draws what it can, and the adapter the rest.
+pub fn rig(control: &Control, processor: bool) -> Result<Rig<'static>, BenchError> {
     let control = control.clone();
-    Ok(Rig::new(adapter_name().map_err(words)?, move || tools(&control)))
+    let adapter = adapter_name().map_err(words)?;
+    let machine = if processor { format!("{adapter}, but the processor where it can") } else { adapter };
+    Ok(Rig::new(machine, move || tools(&control, processor)))
 }
 
 /// Opens the adapter and compiles what measures time on it.
-fn tools(control: &Control) -> Result<Tools<'static>, BenchError> {
+fn tools(control: &Control, processor: bool) -> Result<Tools<'static>, BenchError> {
     let passes = Arc::new(Passes::new(&Gpu::new().map_err(words)?));
-    let mut timers = burnish_render::bench::timers(&passes, control);
-    timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
+    let of_device = burnish_render::bench::timers(&passes, control);
+    let mut of_processor: Vec<(MethodId, Box<dyn FrameTimer>)> = Vec::new();
     for method in lighting::methods() {
         if let Some(timer) = PointTimer::new(method, control) {
-            timers.push((method.info().id, Box::new(timer)));
+            of_processor.push((method.info().id, Box::new(timer)));
         }
     }
+    // The first of a method draws it.
+    let [mut timers, others] = if processor { [of_processor, of_device] } else { [of_device, of_processor] };
+    timers.extend(others);
+    timers.push((MethodId(reference::ID), Box::new(PathTimer { control: control.clone() })));
     let calibrate = burnish_render::bench::calibration(&passes)?;
     Ok(Tools { timers, calibrate: Box::new(calibrate) })
 }
@@ -72,7 +78,7 @@ mod tests {
         // Machines without one run this too.
         let Ok(name) = adapter_name() else { return };
         let control = Control::default();
-        let rig = rig(&control).unwrap();
+        let rig = rig(&control, false).unwrap();
         assert!(!rig.is_open(), "it is only looked for");
         assert_eq!(Gpu::new().unwrap().report().name, name);
     }

@@ -301,6 +301,14 @@ impl Settings {
         }
     }
 
+    /// That of a [`ParamKind::Color`]; white for another kind.
+    pub fn color(&self, spec: &ParamSpec) -> [f32; 3] {
+        match self.value(spec) {
+            ParamValue::Color(color) => color.map(|channel| channel as f32),
+            _ => [1.0; 3],
+        }
+    }
+
     /// The word of a [`ParamKind::Choice`], or the number as text.
     pub fn text(&self, key: &str) -> Option<String> {
         let (spec, value) = self.iter().find(|(spec, _)| spec.key == key)?;

@@ -3,21 +3,21 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::radiance_map::{self, Look, MetSurface};
+use burnish_core::lighting::radiance_map::{self, LISTS, Look, MetSurface, Part};
 use burnish_core::scene::Scene;
 use glam::{UVec3, Vec3, Vec4};
 
 use crate::device::Gpu;
 use crate::error::RenderError;
-use crate::layout::types::{MAP_BOX, MAP_SMOOTH, MAP_UNGUARDED, MapData, MetData};
+use crate::layout::types::{
+    MAP_ALL, MAP_BOX, MAP_FILTER, MAP_FLOATS, MAP_NOTHING, MAP_QUERY, MAP_SEARCH, MAP_SMOOTH, MAP_UNGUARDED, MapData,
+    MetData,
+};
 use crate::pass::radiance_map::RadianceMapPass;
 use crate::scene::check_size;
 
 /// Directions of a map, at most: as many as its setting takes.
 const MOST_DIRECTIONS: usize = 1024;
-
-/// Lists of directions, one drawn in each cell: pixels and frames take turns, so that errors of few do not add up over the picture.
-const LISTS: u32 = 256;
 
 /// The map of a preparation: one buffer of words, since shaders read few buffers.
 pub(crate) struct GpuMap {
@@ -27,8 +27,6 @@ pub(crate) struct GpuMap {
     shape: MapData,
     /// Directions and areas of their cells, for shaders.
     with_areas: wgpu::Buffer,
-    /// What the numbers of each group are multiplied by; 0 for those that are dark.
-    scales: [f32; 3],
 }
 
 impl GpuMap {
@@ -56,28 +54,27 @@ impl GpuMap {
         };
         let [starts, neighbours] = [starts, neighbours].map(&mut place);
         let [positions, normals] = [positions, normals].map(|floats| place(bytemuck::cast_slice(floats)));
-        let (mut scales, mut firsts) = ([0.0; 3], [0; 3]);
+        let (mut scales, mut firsts, mut flags) = ([0.0; 3], [0; 3], 0);
         for (group, name) in radiance_map::GROUPS.iter().enumerate() {
-            let light = prepared.halves(name);
-            if light.is_empty() {
+            let (light, floats) = (prepared.halves(name), prepared.floats(name));
+            if light.is_empty() && floats.is_empty() {
                 continue;
             }
-            if light.len() != 3 * places * directions.len() {
+            if light.len() + floats.len() != 3 * places * directions.len() {
                 return Err(unfit());
             }
             scales[group] = prepared.floats(&format!("{name} scale")).first().copied().unwrap_or(1.0);
             let pair = |pair: &[half::f16]| {
                 u32::from(pair[0].to_bits()) | u32::from(pair.get(1).map_or(0, |h| h.to_bits())) << 16
             };
-            let packed: Vec<u32> = light.chunks(2).map(pair).collect();
-            firsts[group] = place(&packed);
+            firsts[group] = match floats {
+                [] => place(&light.chunks(2).map(pair).collect::<Vec<u32>>()),
+                floats => place(bytemuck::cast_slice(floats)),
+            };
+            flags |= if floats.is_empty() { 0 } else { MAP_FLOATS };
         }
-        let mut lists: Vec<Vec4> = Vec::with_capacity(LISTS as usize * directions.len());
-        for list in 0..LISTS {
-            // Steps of the plastic number and of the golden ratio.
-            let turn = (list as f32 * Vec3::new(0.754_877_7, 0.569_840_3, 0.618_034)).fract();
-            lists.extend(directions.drawn_all(turn).map(|drawn| drawn.direction.extend(drawn.pdf)));
-        }
+        let all = (0..LISTS).flat_map(|list| directions.drawn(list));
+        let lists: Vec<Vec4> = all.map(|drawn| drawn.direction.extend(drawn.pdf)).collect();
         let drawn = place(bytemuck::cast_slice(&lists));
         // Shaders read a word more than the last.
         place(&[0]);
@@ -89,25 +86,29 @@ impl GpuMap {
             places: places as u32,
             directions: directions.len() as u32,
             reach: directions.reach(),
-            flags: 0,
+            flags,
             lobes: 0,
-            factors: Vec3::ZERO,
+            environment_color: Vec3::ONE,
+            environment: firsts[0],
+            lamps_color: Vec3::ONE,
+            lamps: firsts[1],
+            glow_color: Vec3::ONE,
+            glow: firsts[2],
+            scales: Vec3::from(scales),
             below: 0.0,
-            strengths: Vec3::ONE,
             starts,
             neighbours,
             positions,
             normals,
-            environment: firsts[0],
-            lamps: firsts[1],
-            glow: firsts[2],
             drawn,
             lists: LISTS,
+            part: MAP_ALL,
+            pad0: 0,
         };
         let words = gpu.buffer("radiance map", bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
         let with_areas: Vec<Vec4> = (0..directions.len()).map(|k| directions.with_area(k)).collect();
         let with_areas = vectors(gpu, &with_areas);
-        Ok(GpuMap { prepared: prepared.clone(), words, shape, with_areas, scales })
+        Ok(GpuMap { prepared: prepared.clone(), words, shape, with_areas })
     }
 
     /// Group 3 of a frame: how it is looked up.
@@ -119,13 +120,22 @@ impl GpuMap {
     fn data(&self, look: &Look) -> MapData {
         let flags =
             [(look.smooth, MAP_SMOOTH), (look.filter.box_shaped, MAP_BOX), (look.filter.unguarded, MAP_UNGUARDED)];
-        let strengths = Vec3::from(look.strengths);
+        let flags = flags.into_iter().filter(|(on, _)| *on).map(|(_, flag)| flag).sum::<u32>();
+        let [environment_color, lamps_color, glow_color] = look.strengths;
         MapData {
-            flags: flags.into_iter().filter(|(on, _)| *on).map(|(_, flag)| flag).sum(),
+            flags: self.shape.flags | flags,
             lobes: look.lobes,
-            factors: strengths * Vec3::from(self.scales),
-            strengths,
+            environment_color,
+            lamps_color,
+            glow_color,
             below: look.below,
+            part: match look.part {
+                Part::All => MAP_ALL,
+                Part::Nothing => MAP_NOTHING,
+                Part::Query => MAP_QUERY,
+                Part::Search => MAP_SEARCH,
+                Part::Filter => MAP_FILTER,
+            },
             ..self.shape
         }
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use burnish_core::lighting::classical::FrameSettings;
+use burnish_core::lighting::radiance_map::Part;
 use burnish_core::material::Material;
 use burnish_core::param::Settings;
 use burnish_core::picture::Picture;
@@ -109,10 +110,16 @@ impl Renderer {
     /// Draws the first frame of a view and returns its seconds: by the time stamps of a card that has them, else from giving
     /// it to the device until that has drawn it.
     pub fn time_frame(&mut self, view: &View) -> Result<f64, RenderError> {
+        self.time_part(view, Part::All)
+    }
+
+    /// Likewise, of a frame that does a part of the lookups of `radiance-map` only; with other methods the same.
+    pub fn time_part(&mut self, view: &View, part: Part) -> Result<f64, RenderError> {
         let passes = self.loader.passes.clone();
         let gpu = &passes.gpu;
         let (targets, sums) = self.begin(&passes, view)?;
-        let (settings, look) = (self.settings(view), ProbeLook::new(&view.settings));
+        let (settings, mut look) = (self.settings(view), ProbeLook::new(&view.settings));
+        look.map.part = part;
         // Stamps of a software rasteriser mean little.
         let clock = if gpu.is_software() { None } else { DeviceClock::new(gpu) };
         let start = Instant::now();

@@ -56,6 +56,9 @@ pub struct Args {
     /// Setting of the reference that all are judged by, such as bounces=8; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = value::assignment)]
     truth: Vec<(String, String)>,
+    /// Draw on the processor also what the graphics device could draw
+    #[arg(long)]
+    processor: bool,
     /// Measure everything anew: read nothing that was kept from earlier runs
     #[arg(long)]
     fresh: bool,
@@ -90,7 +93,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let cache = cache(&args)?;
     let stop = interrupt::watch().map_err(Failure::resources)?;
     let control = Control::default();
-    let mut rig = rig::rig(&control).map_err(Failure::resources)?;
+    let mut rig = rig::rig(&control, args.processor).map_err(Failure::resources)?;
 
     let mut records = Vec::new();
     let mut failed = None;

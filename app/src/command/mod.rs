@@ -16,6 +16,7 @@ mod hits;
 mod info;
 mod lighting;
 mod line;
+mod map_times;
 mod measure;
 mod merge;
 mod methods;
@@ -64,6 +65,8 @@ pub enum Command {
     Chart(chart::Args),
     /// Measure how far the searches of the method impostor are off what they look for, and what they cost
     Hits(hits::Args),
+    /// Measure what the parts of a frame by the method radiance-map cost, on the processor and the graphics device
+    MapTimes(map_times::Args),
     /// List the lighting methods with what they cover and their settings
     Methods(methods::Args),
     /// Measure how far the classical lighting is from the integrals it stands for
@@ -93,6 +96,7 @@ impl Command {
             Command::Compare(args) => compare::run(args, out, err),
             Command::Chart(args) => chart::run(args, out, err),
             Command::Hits(args) => hits::run(args, out, err),
+            Command::MapTimes(args) => map_times::run(args, out, err),
             Command::Methods(args) => methods::run(args, out),
             Command::Measure(args) => measure::run(args, out),
             Command::FresnelBalls(args) => fresnel_balls::run(args, out),

@@ -60,6 +60,14 @@ impl<'a> Eye<'a> {
         Eye { world, ray, hit, sampler }
     }
 
+    /// The same along a ray from elsewhere, which meets what light does: the numbers of a sample are those of [`World::along_apart`].
+    pub fn along(world: &'a World, origin: Vec3, direction: Vec3, pixel: UVec2, index: u32) -> Eye<'a> {
+        let sampler = PathSampler::new(0, pixel, index);
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let hit = world.closest(&ray, Sight::Light, sampler.salt());
+        Eye { world, ray, hit, sampler }
+    }
+
     /// The surface that it meets; `None` where it sees the sky.
     pub fn point(&self) -> Option<SurfacePoint<'_>> {
         let hit = self.hit.as_ref()?;
@@ -71,6 +79,11 @@ impl<'a> Eye<'a> {
     /// The next four numbers of this sample in `[0, 1)`.
     pub fn random(&mut self) -> [f32; 4] {
         self.sampler.next4()
+    }
+
+    /// Radiance of the sky from a direction (world, unit), whether it is seen or not.
+    pub fn sky(&self, direction: Vec3) -> Vec3 {
+        self.world.lights().sky(direction)
     }
 
     /// Radiance of the lamps that the eye sees as shapes along the ray, before the surface that it meets.
@@ -85,6 +98,24 @@ impl<'a> Eye<'a> {
         let seen = backdrop::look(self.world, &self.ray, &mut self.sampler.clone());
         let radiance = seen.radiance - seen.shadow + self.lamps_seen();
         PathSample { radiance, clamped: Vec3::ZERO, first: None, rays: 1 + seen.rays }
+    }
+}
+
+/// How a surface reflects toward the viewer, for many directions.
+#[derive(Clone, Debug)]
+pub struct Reflecting<'a>(Bsdf<'a>);
+
+impl Reflecting<'_> {
+    /// Response to light from a direction (world, unit): BSDF times cosine; and the density with which [`Reflecting::drawn`] draws the direction, per
+    /// steradian. A mirror has neither.
+    pub fn response_and_density(&self, direction: Vec3) -> (Vec3, f32) {
+        self.0.eval(direction)
+    }
+
+    /// A direction drawn by how the surface reflects; `u` in `[0, 1)^3`. `None` where it reflects nothing there.
+    pub fn drawn(&self, u: Vec3) -> Option<Drawn> {
+        let BsdfSample { wi, weight, pdf } = self.0.sample(u)?;
+        Some(Drawn { direction: wi, weight, pdf })
     }
 }
 
@@ -159,15 +190,14 @@ impl SurfacePoint<'_> {
         self.bsdf().eval(direction).0
     }
 
-    /// The same, and the density with which [`SurfacePoint::drawn`] draws the direction, per steradian; a mirror has neither.
-    pub fn response_and_density(&self, direction: Vec3) -> (Vec3, f32) {
-        self.bsdf().eval(direction)
+    /// How it reflects toward the viewer.
+    pub fn reflecting(&self) -> Reflecting<'_> {
+        Reflecting(self.bsdf())
     }
 
-    /// A direction drawn by how the surface reflects; `u` in `[0, 1)^3`. `None` where it reflects nothing there.
-    pub fn drawn(&self, u: Vec3) -> Option<Drawn> {
-        let BsdfSample { wi, weight, pdf } = self.bsdf().sample(u)?;
-        Some(Drawn { direction: wi, weight, pdf })
+    /// The viewer sees the back of a surface that has none: nothing comes from there.
+    pub fn is_behind(&self) -> bool {
+        !self.point.front && !self.world.is_two_sided(self.hit.instance)
     }
 
     /// What a ray from the point meets in a direction (world, unit), as light does. `index` sets its random numbers apart.

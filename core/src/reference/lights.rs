@@ -182,10 +182,10 @@ impl Lights {
         self.sky.as_ref().is_some_and(|sky| sky.is_sampled())
     }
 
-    /// A direction of the sky with its radiance over the density.
+    /// A direction of the sky with its radiance, drawn with the density of [`Lights::look`].
     pub(super) fn sky_drawn(&self, u: Vec2) -> Option<(Vec3, Vec3)> {
         let sample = self.sky.as_ref()?.sample(u)?;
-        Some((sample.direction, sample.radiance / sample.pdf))
+        Some((sample.direction, sample.radiance))
     }
 
     /// The rates at a point: one sample of each kind that there is, or one by a guess at their irradiance.

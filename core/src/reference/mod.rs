@@ -32,7 +32,7 @@ use glam::{UVec2, Vec3};
 use crate::lighting::{Cover, Coverage, Method, MethodId, MethodInfo, Reads};
 use crate::scene::Camera;
 
-pub use eye::{Drawn, Eye, SurfacePoint};
+pub use eye::{Drawn, Eye, Reflecting, SurfacePoint};
 pub use film::{Film, NOTHING, Pixel, Rejected};
 pub use pacing::{End, Goal, MAX_SAMPLES, Pacing, Step};
 pub use passes::{Control, Pass, preview, preview_with, trace, trace_with};

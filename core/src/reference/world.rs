@@ -214,10 +214,15 @@ impl World {
         self.lights.draws_sky()
     }
 
-    /// A direction of the environment (world, unit), and its radiance over the density per steradian; `u` in `[0, 1)^2`. `None` where there is none
+    /// A direction of the environment (world, unit), drawn with [`World::sky_density`], and its radiance; `u` in `[0, 1)^2`. `None` where there is none
     /// to be drawn, or a number falls between two.
     pub fn sky_drawn(&self, u: Vec2) -> Option<(Vec3, Vec3)> {
         self.lights.sky_drawn(u)
+    }
+
+    /// Per steradian; 0 where the environment is not drawn.
+    pub fn sky_density(&self, direction: Vec3) -> f32 {
+        self.lights.look(direction).1
     }
 
     /// Follows a path; `u` draws its wavelengths, where there are some.

@@ -106,6 +106,12 @@ pub const CONSTANTS: &[(&str, u32)] = &[
     ("MAP_SMOOTH", MAP_SMOOTH),
     ("MAP_BOX", MAP_BOX),
     ("MAP_UNGUARDED", MAP_UNGUARDED),
+    ("MAP_FLOATS", MAP_FLOATS),
+    ("MAP_ALL", MAP_ALL),
+    ("MAP_QUERY", MAP_QUERY),
+    ("MAP_SEARCH", MAP_SEARCH),
+    ("MAP_FILTER", MAP_FILTER),
+    ("MAP_NOTHING", MAP_NOTHING),
     ("HIT_NONE", HIT_NONE),
 ];
 
@@ -156,6 +162,19 @@ pub const MAP_SMOOTH: u32 = 1;
 pub const MAP_BOX: u32 = 2;
 /// Places of a map count wherever they face.
 pub const MAP_UNGUARDED: u32 = 4;
+/// Light of a map is kept in floats.
+pub const MAP_FLOATS: u32 = 8;
+
+/// Part of a lookup that is done: all.
+pub const MAP_ALL: u32 = 0;
+/// The set of a point is found.
+pub const MAP_QUERY: u32 = 1;
+/// The nearest places are searched.
+pub const MAP_SEARCH: u32 = 2;
+/// The light of the set is summed.
+pub const MAP_FILTER: u32 = 3;
+/// Nothing is looked up.
+pub const MAP_NOTHING: u32 = 4;
 
 /// Flag of [`EffortData`]: lobes look at few texels.
 pub const AREA_CUBE_FEW: u32 = 1;
@@ -367,18 +386,22 @@ shared! {
         reach: f32,
         flags: u32,
         lobes: u32,
-        factors: Vec3,
+        environment_color: Vec3,
+        environment: u32,
+        lamps_color: Vec3,
+        lamps: u32,
+        glow_color: Vec3,
+        glow: u32,
+        scales: Vec3,
         below: f32,
-        strengths: Vec3,
         starts: u32,
         neighbours: u32,
         positions: u32,
         normals: u32,
-        environment: u32,
-        lamps: u32,
-        glow: u32,
         drawn: u32,
         lists: u32,
+        part: u32,
+        pad0: u32,
     }
 }
 

@@ -231,36 +231,39 @@ struct EffortData {
 const MAP_SMOOTH: u32 = 1u;
 const MAP_BOX: u32 = 2u;
 const MAP_UNGUARDED: u32 = 4u;
+const MAP_FLOATS: u32 = 8u;
+const MAP_ALL: u32 = 0u;
+const MAP_QUERY: u32 = 1u;
+const MAP_SEARCH: u32 = 2u;
+const MAP_FILTER: u32 = 3u;
+const MAP_NOTHING: u32 = 4u;
 
 // A baked radiance map in a list of words, and how it is looked up.
 struct MapData {
     low: vec3f,
-    // Of a cell of the grid, metres.
     edge: f32,
     size: vec3u,
     places: u32,
     directions: u32,
     reach: f32,
-    // MAP_ flags.
     flags: u32,
-    // Directions drawn from the surface.
     lobes: u32,
-    // From a number of each group to its radiance; 0 where it is dark or switched off.
-    factors: vec3f,
-    // Width of the lobe below which rays are sent.
+    environment_color: vec3f,
+    environment: u32,
+    lamps_color: vec3f,
+    lamps: u32,
+    glow_color: vec3f,
+    glow: u32,
+    scales: vec3f,
     below: f32,
-    // Of environment, lamps and glow, for what rays meet.
-    strengths: vec3f,
-    // Words where things begin.
     starts: u32,
     neighbours: u32,
     positions: u32,
     normals: u32,
-    environment: u32,
-    lamps: u32,
-    glow: u32,
     drawn: u32,
     lists: u32,
+    part: u32,
+    pad0: u32,
 }
 
 // A material as rays find it, with the means of its textures.

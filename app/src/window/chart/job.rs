@@ -85,7 +85,7 @@ fn measure(order: &Order, handle: &Handle, desk: &Desk) -> Measured {
     let Order { shot, candidates, samples, cache } = order;
     let control = Control::of_job(handle);
     desk.tell("looking for a graphics device".into());
-    let mut rig = rig::rig(&control)?;
+    let mut rig = rig::rig(&control, false)?;
     let truth = {
         // One core is left for the window. Timing has all: the command line measures so, and its results are shared.
         let pool = pool::builder().build().map_err(words)?;

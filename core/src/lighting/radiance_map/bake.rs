@@ -7,6 +7,8 @@ use half::f16;
 use rayon::prelude::*;
 
 use super::directions::Directions;
+use super::gather;
+use super::map::Map;
 use super::near::{self, Near};
 use super::points::{Place, Surfaces};
 use crate::job::Handle;
@@ -43,6 +45,8 @@ pub struct Baker<'a> {
     /// The scene as surfaces see it: behind everything is the environment, lamps are added at each point.
     around: World,
     cells: Cells<'a>,
+    /// A map whose light surfaces reflect; without one paths go on until they end.
+    gathered: Option<Map<'a>>,
     asked: Asked,
 }
 
@@ -76,7 +80,19 @@ impl<'a> Baker<'a> {
             return Err(MethodError::Unfit("the scene has no surfaces: there is nothing to bake; open a model".into()));
         }
         let around = world.updated(&Arc::new(surroundings(scene, &[])), *world.options());
-        Ok(Baker { surfaces, around, cells: Cells::new(directions), asked })
+        Ok(Baker { surfaces, around, cells: Cells::new(directions), gathered: None, asked })
+    }
+
+    /// The same that gathers light from a map that was baked before.
+    #[must_use]
+    pub fn gathering(self, map: Option<Map<'a>>) -> Baker<'a> {
+        Baker { gathered: map, ..self }
+    }
+
+    /// What arrives at a place.
+    fn arriving(&self, place: &Place, number: u32) -> Light {
+        let Baker { around, cells, gathered, asked, .. } = self;
+        arriving((around, gathered.as_ref()), cells, place, number, *asked)
     }
 
     /// Blocks in all.
@@ -108,7 +124,7 @@ impl<'a> Baker<'a> {
                 return Err(MethodError::Cancelled);
             }
             let Some(place) = self.surfaces.place(number, self.asked.points) else { continue };
-            let light = arriving(&self.around, &self.cells, &place, number, self.asked);
+            let light = self.arriving(&place, number);
             block.positions.extend(place.position.to_array());
             block.normals.extend(place.normal.to_array());
             block.rays = block.rays.saturating_add(light.rays);
@@ -158,7 +174,7 @@ pub fn age(then: &World, now: &World, directions: &Directions, seed: u32) -> Opt
     let of = |number: u32| {
         let mut lit = bakers.iter().filter_map(|baker| {
             let place = baker.surfaces.place(number, PLACES)?;
-            let light = arriving(&baker.around, &baker.cells, &place, number, asked);
+            let light = baker.arriving(&place, number);
             (light.inside < INSIDE).then_some(light.halves.map(f64::from))
         });
         let ([a, b], [new_a, new_b]) = (lit.next()?, lit.next()?);
@@ -276,7 +292,13 @@ impl<'a> Cells<'a> {
 
 /// Mean radiance that arrives at a place in each cell, over the part of it above the surface, by [`GROUPS`]. Cells below have that of the nearest cell: they
 /// are asked for where the surface bends.
-fn arriving(world: &World, cells: &Cells<'_>, place: &Place, index: u32, asked: Asked) -> Light {
+fn arriving(
+    (world, gathered): (&World, Option<&Map<'_>>),
+    cells: &Cells<'_>,
+    place: &Place,
+    index: u32,
+    asked: Asked,
+) -> Light {
     let Cells { directions, around } = cells;
     let count = directions.len();
     let mut light: [Vec<Vec3>; 3] = std::array::from_fn(|_| vec![Vec3::ZERO; count]);
@@ -284,55 +306,59 @@ fn arriving(world: &World, cells: &Cells<'_>, place: &Place, index: u32, asked: 
     let mut above = vec![0.0f32; count];
     let (mut behind, mut paths) = (0u32, 0u32);
     let mut halves = [0.0f32; 2];
-    let mut rays = 0u32;
-    let draws_sky = world.draws_sky();
+    let (mut rays, mut number) = (0u32, 0u32);
     let seed = pcg(pcg(asked.seed).wrapping_add(index));
+    let counts = paths_of_cells(directions, gathered, place, asked.paths);
+    let samples = if world.draws_sky() { SKY_SAMPLES * count as u32 } else { 0 };
+    // The sky is met by paths and drawn by where it is bright: densities of both add up.
+    let density_of_sky = |k: usize, direction: Vec3| {
+        let drawn = if samples > 0 { samples as f32 * world.sky_density(direction) } else { 0.0 };
+        counts[k] as f32 * directions.pdf(k, direction) + drawn
+    };
     for k in 0..count {
         let turn =
             Vec2::new(unit(pcg(seed.wrapping_add(2 * k as u32))), unit(pcg(seed.wrapping_add(2 * k as u32 + 1))));
-        for path in 0..asked.paths {
-            let u = (hammersley(path, asked.paths) + turn).fract();
+        for path in 0..counts[k] {
+            let u = (hammersley(path, counts[k]) + turn).fract();
             let drawn = directions.draw(k, u);
+            number += 1;
             if drawn.direction.dot(place.geometric) <= 0.0 {
                 continue;
             }
-            let share = 1.0 / (drawn.pdf * asked.paths as f32);
+            let share = 1.0 / (drawn.pdf * counts[k] as f32);
             above[k] += share;
-            let number = k as u32 * asked.paths + path;
-            let found = world.along_apart(
-                place.origin(drawn.direction),
-                drawn.direction,
-                UVec2::new(index, asked.seed),
-                number,
-            );
+            let (origin, pixel) = (place.origin(drawn.direction), UVec2::new(index, asked.seed));
+            let found = match gathered {
+                Some(map) => gather::along(world, map, origin, drawn.direction, pixel, number),
+                None => world.along_apart(origin, drawn.direction, pixel, number),
+            };
             paths += 1;
             rays = rays.saturating_add(found.rays);
             behind += u32::from(found.from_behind);
-            let cosine = share * drawn.direction.dot(place.normal).max(0.0);
+            let cosine = drawn.direction.dot(place.normal).max(0.0);
             let half = &mut halves[(path % 2) as usize];
             for (group, (sum, part)) in light.iter_mut().zip(found.by_source).enumerate() {
-                // What is seen of a sky that is drawn is added below.
-                let is_drawn = group == 0 && found.escaped && draws_sky;
-                let part = if part.is_finite() && !is_drawn { part } else { Vec3::ZERO };
-                sum[k] += share * part;
+                let is_sky = group == 0 && found.escaped;
+                let share = if is_sky { 1.0 / density_of_sky(k, drawn.direction) } else { share };
+                let part = if part.is_finite() { share * part } else { Vec3::ZERO };
+                sum[k] += part;
                 *half += cosine * part.element_sum();
             }
         }
     }
-    // The environment's own light, by where it is bright.
-    let samples = if draws_sky { SKY_SAMPLES * count as u32 } else { 0 };
     for sample in 0..samples {
         let turn = Vec2::new(unit(pcg(seed ^ 0x5bd1_e995)), unit(pcg(seed ^ 0x27d4_eb2f)));
         let u = (hammersley(sample, samples) + turn).fract();
-        let Some((direction, light_over_pdf)) = world.sky_drawn(u) else { continue };
+        let Some((direction, radiance)) = world.sky_drawn(u) else { continue };
         if direction.dot(place.geometric) <= 0.0 {
             continue;
         }
         rays = rays.saturating_add(1);
         if world.distance(place.origin(direction), direction).is_none() {
-            light[0][directions.nearest(direction)] += light_over_pdf / samples as f32;
-            let cosine = direction.dot(place.normal).max(0.0);
-            halves[(sample % 2) as usize] += cosine * light_over_pdf.element_sum() / samples as f32;
+            let k = directions.nearest(direction);
+            let part = radiance / density_of_sky(k, direction);
+            light[0][k] += part;
+            halves[(sample % 2) as usize] += direction.dot(place.normal).max(0.0) * part.element_sum();
         }
     }
     let seen = |k: usize| above[k] > 0.02 * directions.solid_angle(k);
@@ -350,4 +376,21 @@ fn arriving(world: &World, cells: &Cells<'_>, place: &Place, index: u32, asked: 
         halves = [halves[0]; 2];
     }
     Light { groups: light, inside: behind as f32 / paths.max(1) as f32, halves, rays }
+}
+
+/// Paths of each cell: more where a map that was baked before knows bright light, and half of `paths` everywhere. As many in all as of even numbers.
+fn paths_of_cells(directions: &Directions, gathered: Option<&Map<'_>>, place: &Place, paths: u32) -> Vec<u32> {
+    let count = directions.len();
+    let Some(map) = gathered else { return vec![paths; count] };
+    let known = map.arriving(place.position, place.normal);
+    let is_above = |k: &usize| directions.get(*k).dot(place.geometric) > 0.0;
+    let bright = |k: usize| known[k].element_sum().max(0.0) * directions.solid_angle(k);
+    let cells = (0..count).filter(is_above);
+    let (all, sum) = cells.fold((0, 0.0), |(all, sum), k| (all + 1, sum + bright(k)));
+    if sum <= 0.0 || !sum.is_finite() {
+        return vec![paths; count];
+    }
+    let least = paths.div_ceil(2);
+    let more = ((paths - least) * all) as f32 / sum;
+    (0..count).map(|k| least + if is_above(&k) { (more * bright(k)) as u32 } else { 0 }).collect()
 }

@@ -1,8 +1,9 @@
 //! The directions in which all points keep light, and the cells of the sphere that belong to them.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
-use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, UVec3, Vec2, Vec3, Vec4};
 
 use crate::math::sampling::spiral;
 
@@ -26,6 +27,12 @@ impl Spread {
 /// Fewest directions: with fewer a cell may reach around half of the sphere.
 pub const FEWEST: u32 = 12;
 
+/// Lists of directions that are drawn in the cells: pixels and frames take turns, so that errors of few do not add up over a picture.
+pub const LISTS: u32 = TURNS[0] * TURNS[1] * TURNS[2];
+
+/// Turns of a list, along the three numbers that decide it.
+const TURNS: [u32; 3] = [8, 8, 4];
+
 /// A cell: the directions that are nearer to its own than to any other.
 #[derive(Clone, Debug)]
 struct Cell {
@@ -47,6 +54,8 @@ pub struct Directions {
     cells: Vec<Cell>,
     /// See [`Directions::reach`].
     reach: f32,
+    /// See [`Directions::drawn`].
+    drawn: OnceLock<Vec<Drawn>>,
 }
 
 /// A direction drawn in a cell.
@@ -68,7 +77,14 @@ impl Directions {
         // Twice the radius of the widest cell.
         let widest = cells.iter().flat_map(|cell| &cell.corners).map(|p| p.length().atan()).fold(0.0, f64::max);
         let reach = (2.0 * widest).min(PI).cos() as f32;
-        Directions { spread, list: list.iter().map(|d| d.as_vec3()).collect(), solid_angles, cells, reach }
+        Directions {
+            spread,
+            list: list.iter().map(|d| d.as_vec3()).collect(),
+            solid_angles,
+            cells,
+            reach,
+            drawn: OnceLock::new(),
+        }
     }
 
     /// How they are spread.
@@ -106,12 +122,30 @@ impl Directions {
         self.list[k].extend(self.cells[k].areas.last().copied().unwrap_or(0.0) as f32)
     }
 
-    /// A direction in each cell with its density, by numbers in `[0, 1)^3` that turn all of them.
-    pub fn drawn_all(&self, random: Vec3) -> impl Iterator<Item = Drawn> + '_ {
+    /// A direction in each cell with its density: one of [`LISTS`] lists, which together fill the cells evenly.
+    pub fn drawn(&self, list: u32) -> &[Drawn] {
+        let [x, y, z] = TURNS;
+        let turn = |list: u32| {
+            let at = UVec3::new(list / (y * z), list / z % y, list % z);
+            (at.as_vec3() + 0.5) / UVec3::new(x, y, z).as_vec3()
+        };
+        let drawn = self.drawn.get_or_init(|| (0..LISTS).flat_map(|list| self.draw_all(turn(list))).collect());
+        let first = self.len() * (list % LISTS) as usize;
+        &drawn[first..first + self.len()]
+    }
+
+    /// The list for numbers in `[0, 1)^3`: where these are well spread, so is what the lists draw.
+    pub fn list_of(random: Vec3) -> u32 {
+        let [x, y, z] = TURNS;
+        let at = (random * UVec3::new(x, y, z).as_vec3()).as_uvec3().min(UVec3::new(x, y, z) - 1);
+        (at.x * y + at.y) * z + at.z
+    }
+
+    fn draw_all(&self, turn: Vec3) -> impl Iterator<Item = Drawn> + '_ {
         let count = self.len() as u32;
         (0..count).map(move |k| {
-            let u = spiral(k, count, random.truncate());
-            self.draw(k as usize, Vec2::new(u.x, (u.y * 7.0 + random.z).fract()))
+            let u = spiral(k, count, turn.truncate());
+            self.draw(k as usize, Vec2::new(u.x, (u.y * 7.0 + turn.z).fract()))
         })
     }
 

@@ -1,7 +1,10 @@
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::*;
 use crate::lighting::Drawing;
+use crate::lighting::radiance_map::GROUPS;
 use crate::reference::{Options, View};
 use crate::scene::{Environment, Scene, gallery};
 
@@ -110,6 +113,70 @@ fn groups_of_light_add_up_and_are_scaled_without_a_bake() {
     let environment = of(&[("glow-strength", "0")]);
     assert!(dark.abs() < 1e-4 * all, "{dark} {all}");
     assert!((bright - (environment + 3.0 * (all - environment))).abs() < 1e-3 * bright, "{environment} {all} {bright}");
+}
+
+#[test]
+fn gathered_light_is_that_of_whole_paths_with_less_noise() {
+    // A polished ball throws light that paths seldom find.
+    let world = world("room?roughness=0.2&material=Cu", |_| ());
+    let of = |gather: &str, seed: &str| {
+        let settings = settings(&[("points", "1500"), ("gather", gather), ("seed", seed)]);
+        let prepared = baked(&world, &settings);
+        let map = Map::of(&prepared, &settings).unwrap();
+        let floor = (0..400).map(|i| Vec3::new(0.09 * (i % 20) as f32 - 0.85, -0.999, 0.09 * (i / 20) as f32 - 0.85));
+        let light = |at: Vec3| {
+            let known = map.arriving(at, Vec3::Y);
+            let cells = known.iter().enumerate();
+            let of = |(k, light): (usize, &Vec3)| {
+                map.directions.solid_angle(k) * map.directions.get(k).y.max(0.0) * light.element_sum()
+            };
+            cells.map(of).sum::<f32>()
+        };
+        floor.map(light).collect::<Vec<f32>>()
+    };
+    let sum = |light: &[f32]| light.iter().sum::<f32>();
+    let apart = |gather: &str| {
+        let [a, b] = ["1", "2"].map(|seed| of(gather, seed));
+        let squared: f32 = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum();
+        ((squared / a.iter().map(|a| a * a).sum::<f32>()).sqrt(), 0.5 * (sum(&a) + sum(&b)))
+    };
+    let ((noise, all), (gathered_noise, gathered)) = (apart("0"), apart("1"));
+    println!("{noise} {gathered_noise}, {}", gathered / all);
+    assert!((gathered / all - 1.0).abs() < 0.02 && gathered_noise < 0.9 * noise, "{noise} {gathered_noise}");
+}
+
+#[test]
+fn what_frames_make_of_light_does_not_change_a_bake() {
+    let world = world("room", |_| ());
+    let of = |given: &[(&str, &str)]| {
+        let few = [("points", "300"), ("paths", "2"), ("directions", "18")];
+        baked(&world, &settings(&[&few, given].concat()))
+    };
+    assert_eq!(
+        of(&[]),
+        of(&[("glow-strength", "3"), ("lamps-tint", "0,1,0"), ("filter", "box"), ("trace-below", "0")])
+    );
+}
+
+#[test]
+fn light_is_tinted_without_a_bake() {
+    let world = world("room?roughness=0.5", |_| ());
+    let settings_of = |given: &[(&str, &str)]| {
+        settings(&[&[("points", "1000"), ("paths", "1"), ("environment-strength", "0")], given].concat())
+    };
+    let prepared = baked(&world, &settings_of(&[]));
+    let of = |given: &[(&str, &str)]| {
+        let settings = settings_of(given);
+        Map::of(&prepared, &settings).unwrap().arriving(Vec3::new(0.3, -0.999, 0.1), Vec3::Y)
+    };
+    let (white, red) = (of(&[]), of(&[("glow-tint", "1,0,0.5")]));
+    assert!(white.iter().any(|light| light.y > 0.0));
+    for (white, red) in white.iter().zip(&red) {
+        assert!(
+            (*red - *white * Vec3::new(1.0, 0.0, 0.5)).abs().max_element() < 1e-4 * white.max_element(),
+            "{white} {red}"
+        );
+    }
 }
 
 #[test]

@@ -5,17 +5,27 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::bake::{Asked, Baker, Block};
+use super::map::Map;
 use super::method::RadianceMap;
-use super::settings::{asked, asked_directions};
-use super::shards::{Shard, ShardAbout};
+use super::settings::{PARAMS, asked, asked_directions, gathered};
+use super::shards::{self, Shard, ShardAbout};
 use crate::job::Handle;
-use crate::lighting::MethodError;
 use crate::lighting::prepared::Origin;
+use crate::lighting::{MethodError, Prepared};
 use crate::param::Settings;
 use crate::reference::World;
 
 /// Blocks that a thread bakes between two looks at what is to be kept.
 const AT_ONCE: usize = 4;
+
+/// Share of a job that baking a map to gather from takes, about.
+const BEFORE: f32 = 0.2;
+
+/// A whole bake.
+pub(super) fn prepared(world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
+    let shard = run(world, settings, [1, 1], None, |_| (), job)?;
+    Ok(shards::whole(&shard.about, &shard.blocks).map_err(MethodError::Unfit)?.prepared)
+}
 
 /// Bakes what a shard `[which, of]`, counted from 1, still lacks after `begun`. `keep` is called now and then with what is there. The same for any
 /// number of threads, and however often it was interrupted.
@@ -30,6 +40,14 @@ pub fn run(
     let directions = asked_directions(settings);
     let asked: Asked = asked(settings);
     let baker = Baker::new(world, &directions, asked)?;
+    let before = match gathered(settings) {
+        Some(settings) => Some(prepared(world, &settings, &job.part(0.0, BEFORE))?),
+        None => None,
+    };
+    let job = &job.part(if before.is_some() { BEFORE } else { 0.0 }, 1.0);
+    // As it was baked, whatever frames make of it.
+    let plain = Settings::new(PARAMS);
+    let baker = baker.gathering(before.as_ref().and_then(|prepared| Map::of(prepared, &plain)));
     let origin = Origin::of(&RadianceMap, settings, world.scene());
     let about = ShardAbout { origin, shard, area: baker.area(), blocks: baker.blocks() };
     let mut done = begun.filter(|begun| begun.about == about).unwrap_or(Shard { about, blocks: Vec::new() });

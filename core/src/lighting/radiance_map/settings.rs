@@ -3,17 +3,22 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
+use glam::Vec3;
+
 use super::bake::Asked;
 use super::directions::{Directions, FEWEST, Spread};
 use super::near::Filter;
 use crate::lighting::{Prepared, classical};
 use crate::param::{Affects, ParamError, ParamKind, ParamSpec, ParamValue, Settings};
 
+/// Places of a map, at least.
+const FEWEST_POINTS: u32 = 64;
+
 const POINTS: ParamSpec = ParamSpec {
     key: "points",
     label: "Points",
     unit: "",
-    kind: ParamKind::Integer { min: 64, max: 4_000_000, default: 10_000 },
+    kind: ParamKind::Integer { min: FEWEST_POINTS as i64, max: 4_000_000, default: 10_000 },
     help: "Places on surfaces of which light is kept, spread by area.",
     affects: Affects::Prepare,
 };
@@ -33,6 +38,16 @@ const PATHS: ParamSpec = ParamSpec {
     unit: "per direction",
     kind: ParamKind::Integer { min: 1, max: 65_536, default: 8 },
     help: "Paths that are traced for each direction of each point.",
+    affects: Affects::Prepare,
+};
+
+const GATHER: ParamSpec = ParamSpec {
+    key: "gather",
+    label: "Gather",
+    unit: "times",
+    kind: ParamKind::Integer { min: 0, max: 4, default: 1 },
+    help: "Paths end at the first surface and take the light of a map of a quarter of the points, which is baked before: less noise. With 0 they \
+           go on until they end.",
     affects: Affects::Prepare,
 };
 
@@ -67,7 +82,7 @@ const TRACE_BELOW: ParamSpec = ParamSpec {
     key: "trace-below",
     label: "Trace below",
     unit: "roughness",
-    kind: ParamKind::Number { min: 0.0, max: 1.0, default: 0.25 },
+    kind: ParamKind::Number { min: 0.0, max: 1.0, default: 0.35 },
     help: "Smoother surfaces trace rays and take the map where these end.",
     affects: Affects::Frame,
 };
@@ -121,11 +136,26 @@ const STRENGTHS: [ParamSpec; 3] = [
     strength("glow-strength", "Glow", "Factor on the light of what glows, without another bake."),
 ];
 
+const fn tint(key: &'static str, label: &'static str) -> ParamSpec {
+    ParamSpec {
+        key,
+        label,
+        unit: "",
+        kind: ParamKind::Color { max: 4.0, default: [1.0; 3] },
+        help: "Colour by which that light is multiplied, linear, without another bake.",
+        affects: Affects::Frame,
+    }
+}
+
+const TINTS: [ParamSpec; 3] =
+    [tint("environment-tint", "Environment tint"), tint("lamps-tint", "Lamps tint"), tint("glow-tint", "Glow tint")];
+
 /// Settings of this method: the last are those of `classical`, but for its samples.
 pub const PARAMS: &[ParamSpec] = &[
     POINTS,
     DIRECTIONS,
     PATHS,
+    GATHER,
     SPREAD,
     SEED,
     LOBE_SAMPLES,
@@ -134,8 +164,11 @@ pub const PARAMS: &[ParamSpec] = &[
     FILTER,
     GUARDS,
     STRENGTHS[0],
+    TINTS[0],
     STRENGTHS[1],
+    TINTS[1],
     STRENGTHS[2],
+    TINTS[2],
     classical::PARAMS[1],
     classical::PARAMS[2],
     classical::PARAMS[3],
@@ -150,10 +183,25 @@ pub(super) const DRAFT_DIRECTIONS: u32 = 32;
 /// Settings for a draft, in a part of a second.
 pub(super) fn draft(settings: &Settings) -> Result<Settings, ParamError> {
     let mut draft = settings.clone();
-    for (spec, most) in [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1)] {
+    for (spec, most) in [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1), (&GATHER, 0)] {
         draft.set(spec.key, &settings.whole(spec).min(most).to_string())?;
     }
     Ok(draft)
+}
+
+/// Settings of the map that a bake gathers from; `None` for one that gathers nothing.
+pub(super) fn gathered(settings: &Settings) -> Option<Settings> {
+    /// So that noise of the map does not come again in those that gather from it.
+    const OTHER_SEED: u32 = 0x9e37_79b9;
+    let times = settings.whole(&GATHER);
+    let before = [
+        (&GATHER, times.checked_sub(1)?),
+        (&POINTS, settings.whole(&POINTS).div_ceil(4).max(FEWEST_POINTS)),
+        (&SEED, settings.whole(&SEED).wrapping_add(OTHER_SEED)),
+    ];
+    let mut settings = settings.clone();
+    before.into_iter().try_for_each(|(spec, value)| settings.set(spec.key, &value.to_string())).ok()?;
+    Some(settings)
 }
 
 /// What is baked, from settings made of [`PARAMS`].
@@ -173,8 +221,26 @@ pub struct Look {
     pub smooth: bool,
     /// Which places count.
     pub filter: Filter,
-    /// Factors on the light of each of [`super::GROUPS`].
-    pub strengths: [f32; 3],
+    /// Factors on the light of each of [`super::GROUPS`], linear Rec.709.
+    pub strengths: [Vec3; 3],
+    /// What of it is done.
+    pub part: Part,
+}
+
+/// What is done of a lookup: less than all tells what parts of a frame cost, its pictures mean nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Part {
+    /// All.
+    #[default]
+    All,
+    /// Nothing is looked up.
+    Nothing,
+    /// The set that lights a point is found.
+    Query,
+    /// The eight nearest places are searched instead.
+    Search,
+    /// The light of the set is summed over all directions.
+    Filter,
 }
 
 impl Look {
@@ -185,7 +251,10 @@ impl Look {
             below: settings.number(&TRACE_BELOW).powi(2),
             smooth: settings.choice(&INTERPOLATION) == 1,
             filter: filter(settings),
-            strengths: STRENGTHS.map(|spec| settings.number(&spec)),
+            strengths: std::array::from_fn(|i| {
+                settings.number(&STRENGTHS[i]) * Vec3::from_array(settings.color(&TINTS[i]))
+            }),
+            part: Part::All,
         }
     }
 }

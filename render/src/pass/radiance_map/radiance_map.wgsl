@@ -18,6 +18,9 @@ override traced: bool = true;
 // Share of its distance by which a ray starts beside its surface: depths are no more exact.
 const MAP_LIFT: f32 = 1e-4;
 
+// Frames that a still picture has.
+const MAP_STILL: u32 = 16u;
+
 fn ggx_albedo_entry(index: u32) -> f32 {
     return tables[index];
 }
@@ -72,8 +75,11 @@ fn radiance_map_drawn(k: u32) -> vec4f {
     return vec4f(map_vector(first), bitcast<f32>(map_words[first + 3u]));
 }
 
-// Three halves of a list that begins at a word.
-fn map_halves(first: u32, number: u32) -> vec3f {
+// Three numbers of a list that begins at a word.
+fn map_numbers(first: u32, number: u32) -> vec3f {
+    if (given.flags & MAP_FLOATS) != 0u {
+        return map_vector(first + 3u * number);
+    }
     let half = 3u * number;
     let word = first + (half >> 1u);
     let a = unpack2x16float(map_words[word]);
@@ -84,14 +90,15 @@ fn map_halves(first: u32, number: u32) -> vec3f {
 fn radiance_map_light(place: u32, k: u32) -> vec3f {
     let number = place * given.directions + k;
     var light = vec3f(0.0);
-    if given.factors.x > 0.0 {
-        light += given.factors.x * map_halves(given.environment, number);
+    // Those of no scale are dark.
+    if given.scales.x > 0.0 {
+        light += given.scales.x * given.environment_color * map_numbers(given.environment, number);
     }
-    if given.factors.y > 0.0 {
-        light += given.factors.y * map_halves(given.lamps, number);
+    if given.scales.y > 0.0 {
+        light += given.scales.y * given.lamps_color * map_numbers(given.lamps, number);
     }
-    if given.factors.z > 0.0 {
-        light += given.factors.z * map_halves(given.glow, number);
+    if given.scales.z > 0.0 {
+        light += given.scales.z * given.glow_color * map_numbers(given.glow, number);
     }
     return light;
 }
@@ -167,7 +174,10 @@ fn followed(first: RadianceMapSeen, point: vec3f, lift: f32, random: vec4f, ray:
         let start = position + lifted * seen.geometric;
         let hit = trace_closest(RayData(start, 3.0e38, drawn.wi, 0u));
         if hit.instance == HIT_NONE {
-            return sum + weight * given.strengths.x * classical_radiance(drawn.wi, 0.0);
+            // As wide as the share of one of the rays of a still picture, so that few of them do not miss a sun.
+            var level = classical_footprint(drawn.wi, drawn.pdf, MAP_STILL, view.environment_mips, 0.0);
+            level = select(level, 0.0, drawn.is_mirror);
+            return sum + weight * given.environment_color * classical_radiance(drawn.wi, level);
         }
         position = start + hit.t * drawn.wi;
         lifted = MAP_LIFT * hit.t;
@@ -179,17 +189,38 @@ fn followed(first: RadianceMapSeen, point: vec3f, lift: f32, random: vec4f, ray:
         let mean = met[instance.material];
         let frame = frame_new(geometric);
         seen = radiance_map_seen(met_surface(m, mean), frame, frame, geometric, -drawn.wi);
-        sum += weight * given.strengths.z * seen.passed * mean.emission;
-        if given.strengths.y > 0.0 {
+        sum += weight * given.glow_color * seen.passed * mean.emission;
+        if any(given.lamps_color > vec3f(0.0)) {
             for (var i = 0u; i < view.light_count; i++) {
                 if lights_instance(i, hit.instance) {
                     let u = radiance_map_numbers(random, ray + 31u * i + 7u).xy;
-                    sum += weight * given.strengths.y * met_lamp(lights[i], seen, position, lifted, u);
+                    sum += weight * given.lamps_color * met_lamp(lights[i], seen, position, lifted, u);
                 }
             }
         }
     }
     return sum;
+}
+
+// What a part of a lookup finds, for measuring what it costs.
+fn found_by_part(position: vec3f, normal: vec3f) -> vec3f {
+    if given.part == MAP_NOTHING {
+        return vec3f(0.0);
+    }
+    if given.part == MAP_QUERY {
+        let place = radiance_map_nearest(shape(), position, normal, RADIANCE_MAP_AGREEMENT, 1u).places[0];
+        return vec3f(f32(radiance_map_neighbour(RADIANCE_MAP_SET * place + 1u)));
+    }
+    if given.part == MAP_SEARCH {
+        let found = radiance_map_nearest(shape(), position, normal, RADIANCE_MAP_AGREEMENT, RADIANCE_MAP_SET);
+        return vec3f(f32(found.places[0] ^ found.places[7]));
+    }
+    let near = radiance_map_near(shape(), position, normal);
+    var light = vec3f(0.0);
+    for (var k = 0u; k < given.directions; k++) {
+        light += radiance_map_arriving(near, k);
+    }
+    return light;
 }
 
 @fragment
@@ -215,7 +246,9 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let more = sampling_pcg(bitcast<u32>(turn.x) ^ sampling_pcg(bitcast<u32>(turn.y)));
     let random = vec4f(turn, sampling_unit(more), sampling_unit(sampling_pcg(more)));
     var value = vec3f(0.0);
-    if traced && radiance_map_is_smooth(seen.s, given.below) {
+    if given.part != MAP_ALL {
+        value = found_by_part(point, t.normal);
+    } else if traced && radiance_map_is_smooth(seen.s, given.below) {
         let rays = max(given.lobes, 1u);
         let lift = MAP_LIFT * distance(view.viewer.xyz, point * view.viewer.w);
         for (var ray = 0u; ray < rays; ray++) {

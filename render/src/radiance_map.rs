@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burnish_core::lighting::Prepared;
-use burnish_core::lighting::radiance_map::{self, LISTS, Look, MetSurface, Part};
+use burnish_core::lighting::radiance_map::{self, Grid, LISTS, Look, MetSurface, Part};
 use burnish_core::scene::Scene;
 use glam::{UVec3, Vec3, Vec4};
 
@@ -37,12 +37,14 @@ impl GpuMap {
         let (starts, neighbours) = (prepared.whole("starts"), prepared.whole("neighbours"));
         let size = prepared.whole("cells");
         let places = positions.len() / 3;
-        let cells = size.iter().map(|count| *count as usize).product::<usize>();
+        let [x, y, z] = *size else { return Err(unfit()) };
+        let (low, edge) = (prepared.vector("grid", 0), prepared.vector("grid", 1).x);
+        let grid = Grid { low, edge, size: UVec3::new(x, y, z) };
         let is_whole = places > 0
             && normals.len() == positions.len()
             && neighbours.len() == radiance_map::SET * places
-            && size.len() == 3
-            && starts.len() == cells + 1;
+            && grid.is_sound()
+            && starts.len() == grid.cells() + 1;
         if !is_whole || directions.len() > MOST_DIRECTIONS {
             return Err(unfit());
         }
@@ -80,9 +82,9 @@ impl GpuMap {
         place(&[0]);
         check_size(gpu, "radiance map", 4 * words.len() as u64)?;
         let shape = MapData {
-            low: prepared.vector("grid", 0),
-            edge: prepared.vector("grid", 1).x,
-            size: UVec3::from_slice(size),
+            low,
+            edge,
+            size: grid.size,
             places: places as u32,
             directions: directions.len() as u32,
             reach: directions.reach(),

@@ -6,6 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 use half::f16;
 use rayon::prelude::*;
 
+use super::density::Density;
 use super::directions::Directions;
 use super::gather;
 use super::map::Map;
@@ -47,6 +48,8 @@ pub struct Baker<'a> {
     cells: Cells<'a>,
     /// A map whose light surfaces reflect; without one paths go on until they end.
     gathered: Option<Map<'a>>,
+    /// Where the last places lie, and how many these are.
+    density: Option<(Density<'a>, u32)>,
     asked: Asked,
 }
 
@@ -80,13 +83,30 @@ impl<'a> Baker<'a> {
             return Err(MethodError::Unfit("the scene has no surfaces: there is nothing to bake; open a model".into()));
         }
         let around = world.updated(&Arc::new(surroundings(scene, &[])), *world.options());
-        Ok(Baker { surfaces, around, cells: Cells::new(directions), gathered: None, asked })
+        Ok(Baker { surfaces, around, cells: Cells::new(directions), gathered: None, density: None, asked })
     }
 
     /// The same that gathers light from a map that was baked before.
     #[must_use]
     pub fn gathering(self, map: Option<Map<'a>>) -> Baker<'a> {
         Baker { gathered: map, ..self }
+    }
+
+    /// The same that puts a share of the places where light varies.
+    #[must_use]
+    pub fn denser(self, density: Option<Density<'a>>, share: f32) -> Baker<'a> {
+        let dense = (share * self.asked.points as f32) as u32;
+        Baker { density: density.map(|density| (density, dense.min(self.asked.points))), ..self }
+    }
+
+    /// Place number `number`.
+    fn place(&self, number: u32) -> Option<Place> {
+        let (surfaces, points) = (&self.surfaces, self.asked.points);
+        match &self.density {
+            Some((density, dense)) if number >= points - dense => density.place(surfaces, number),
+            Some((_, dense)) => surfaces.place(number, points - dense),
+            None => surfaces.place(number, points),
+        }
     }
 
     /// What arrives at a place.
@@ -123,7 +143,7 @@ impl<'a> Baker<'a> {
             if job.is_cancelled() {
                 return Err(MethodError::Cancelled);
             }
-            let Some(place) = self.surfaces.place(number, self.asked.points) else { continue };
+            let Some(place) = self.place(number) else { continue };
             let light = self.arriving(&place, number);
             block.positions.extend(place.position.to_array());
             block.normals.extend(place.normal.to_array());
@@ -173,7 +193,7 @@ pub fn age(then: &World, now: &World, directions: &Directions, seed: u32) -> Opt
     let bakers = [Baker::new(then, directions, asked).ok()?, Baker::new(now, directions, asked).ok()?];
     let of = |number: u32| {
         let mut lit = bakers.iter().filter_map(|baker| {
-            let place = baker.surfaces.place(number, PLACES)?;
+            let place = baker.place(number)?;
             let light = baker.arriving(&place, number);
             (light.inside < INSIDE).then_some(light.halves.map(f64::from))
         });

@@ -41,6 +41,9 @@ impl<'a> Map<'a> {
         if places == 0 || normals.len() != positions.len() || neighbours.len() != SET * places {
             return None;
         }
+        if !grid.is_sound() || starts.len() != grid.cells() + 1 {
+            return None;
+        }
         let look = Look::new(settings);
         let mut groups = [const { None }; 3];
         for ((name, strength), group) in GROUPS.iter().zip(look.strengths).zip(&mut groups) {
@@ -77,7 +80,8 @@ impl<'a> Map<'a> {
         let numbers = 3 * self.directions.len();
         let mut light = vec![Vec3::ZERO; self.directions.len()];
         let mut wide = vec![0.0f32; numbers];
-        for (weight, place) in weights.into_iter().zip(set).filter(|(weight, _)| *weight > 0.0) {
+        let is_there = |(weight, place): &(f32, &u32)| *weight > 0.0 && (**place as usize) < self.near.len();
+        for (weight, place) in weights.into_iter().zip(set).filter(is_there) {
             let of_place = numbers * *place as usize..numbers * (*place as usize + 1);
             for (own, factor) in self.groups.iter().flatten().filter(|(_, factor)| *factor != Vec3::ZERO) {
                 let own = match own {
@@ -110,7 +114,8 @@ impl<'a> Map<'a> {
                     Light::Floats(floats) => std::array::from_fn(|i| floats[first + i]),
                 })
             };
-            let sum = set.iter().zip(weights).filter(|(_, w)| *w > 0.0).map(|(place, w)| w * of_place(*place));
+            let is_there = |(place, weight): &(&u32, f32)| *weight > 0.0 && (**place as usize) < self.near.len();
+            let sum = set.iter().zip(weights).filter(is_there).map(|(place, w)| w * of_place(*place));
             *factor * sum.sum::<Vec3>()
         })
     }

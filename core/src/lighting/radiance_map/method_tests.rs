@@ -208,4 +208,15 @@ fn a_map_knows_its_directions_and_what_is_no_map_is_not_used() {
     // Cut short.
     let cut = prepared.halves(GROUPS[2])[3..].to_vec();
     assert!(Map::of(&Prepared::nothing().with(GROUPS[2], cut), &settings(&[])).is_none());
+    // Places that are not there, in an array of the right size.
+    let mut arrays = prepared.flat();
+    for (name, array) in &mut arrays {
+        if name == "neighbours" {
+            *array = crate::file::Array::U32(vec![u32::MAX - 9; prepared.whole("neighbours").len()]);
+        }
+    }
+    let hostile = Prepared::of_flat(arrays).unwrap();
+    let map = Map::of(&hostile, &settings(&[])).unwrap();
+    assert!(map.arriving(Vec3::new(0.0, -1.0, 0.0), Vec3::Y).iter().all(|light| light.is_finite()));
+    assert_eq!(map.apart(Vec3::new(0.0, -1.0, 0.0), Vec3::Y, Vec3::Y), [Vec3::ZERO; 3]);
 }

@@ -5,6 +5,7 @@
 
 mod average;
 mod bake;
+mod density;
 mod directions;
 mod gather;
 mod map;

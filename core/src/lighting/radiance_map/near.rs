@@ -35,6 +35,16 @@ impl Grid {
         Grid { low, edge, size }
     }
 
+    /// It has cells, and not more than grids have.
+    pub fn is_sound(&self) -> bool {
+        self.edge > 0.0 && self.size.min_element() > 0 && self.size.max_element() <= MOST_CELLS
+    }
+
+    /// Cells in all, of a sound one.
+    pub fn cells(&self) -> usize {
+        self.size.element_product() as usize
+    }
+
     /// The cell of a point, the nearest where it is outside.
     fn cell(&self, position: Vec3) -> UVec3 {
         let at = ((position - self.low) / self.edge).floor().max(Vec3::ZERO);
@@ -54,7 +64,7 @@ impl Grid {
 
     /// Where the places of each cell start, and where the last end.
     pub fn starts(&self, ordered: &[f32]) -> Vec<u32> {
-        let cells = self.size.element_product() as usize;
+        let cells = self.cells();
         let mut starts = vec![0u32; cells + 1];
         for position in ordered.chunks_exact(3) {
             starts[self.index(self.cell(Vec3::from_slice(position))) + 1] += 1;
@@ -110,12 +120,12 @@ impl<'a> Near<'a> {
 
     /// Metres.
     pub fn position(&self, place: u32) -> Vec3 {
-        Vec3::from_slice(&self.positions[3 * place as usize..])
+        vector(self.positions, place)
     }
 
     /// Unit.
     pub fn normal(&self, place: u32) -> Vec3 {
-        Vec3::from_slice(&self.normals[3 * place as usize..])
+        vector(self.normals, place)
     }
 
     /// The `count` nearest places whose normal agrees, the nearest first; fewer where there are not so many nearby.
@@ -168,7 +178,7 @@ impl<'a> Near<'a> {
         found: &mut Vec<(f32, u32)>,
     ) {
         let cell = self.grid.index(cell);
-        for place in self.starts[cell]..self.starts[cell + 1] {
+        for place in self.starts[cell]..self.starts[cell + 1].min(self.len() as u32) {
             if self.normal(place).dot(normal) < agreement {
                 continue;
             }
@@ -195,8 +205,14 @@ impl<'a> Near<'a> {
     /// The set of the place that is nearest to a point; of one with another normal where none agrees, and none where there are no places.
     pub fn set(&self, position: Vec3, normal: Vec3) -> Option<&'a [u32]> {
         let nearest = self.nearest(position, normal, 1);
-        let place = *nearest.first().or(self.any(position).as_ref())? as usize;
-        self.neighbours.get(SET * place..SET * (place + 1))
+        let place = *nearest.first().or(self.any(position).as_ref())?;
+        Some(self.neighbours_of(place)).filter(|set| !set.is_empty())
+    }
+
+    /// The set of a place; empty where none is kept.
+    pub fn neighbours_of(&self, place: u32) -> &'a [u32] {
+        let first = SET * place as usize;
+        self.neighbours.get(first..first + SET).unwrap_or_default()
     }
 
     /// A place in the cell of a point, or in the next one that has some.
@@ -205,6 +221,12 @@ impl<'a> Near<'a> {
         let first = *self.starts.get(cell)?;
         (!self.is_empty()).then(|| first.min(self.len() as u32 - 1))
     }
+}
+
+/// Zero where a file names a place that is not there.
+fn vector(of: &[f32], place: u32) -> Vec3 {
+    let first = 3 * place as usize;
+    of.get(first..first + 3).map_or(Vec3::ZERO, Vec3::from_slice)
 }
 
 /// Weights of the places of a set at a point: a hat over the distance that ends a little beyond the farthest, times how far the normals agree, times how

@@ -66,6 +66,16 @@ impl<'a> Surfaces<'a> {
         let u = Vec2::new(r1 as f32, r2 as f32) / 16_777_216.0;
         let shift = f64::from((index.wrapping_mul(2_654_435_769) >> 8) as f32 / 16_777_216.0);
         let wanted = (f64::from(index) + shift) / f64::from(count.max(1)) * self.area();
+        self.at(wanted, u, index % 2 == 1)
+    }
+
+    /// A place by numbers in `[0, 1)^3`, even by area; `back` is the side of surfaces that have two.
+    pub(super) fn drawn(&self, u: Vec3, back: bool) -> Option<Place> {
+        self.at(f64::from(u.z) * self.area(), u.truncate(), back)
+    }
+
+    /// Where so many square metres lie before it, at `u` in its triangle.
+    fn at(&self, wanted: f64, u: Vec2, back: bool) -> Option<Place> {
         let at = self.sums.partition_point(|sum| *sum <= wanted).min(self.list.len().checked_sub(1)?);
         let (instance, triangle) = self.list[at];
         let instance = &self.scene.instances[instance as usize];
@@ -82,8 +92,8 @@ impl<'a> Surfaces<'a> {
         let mean = (0..3).map(|i| weights[i] * mesh.normals.get(ids[i]).copied().unwrap_or(Vec3::ZERO)).sum::<Vec3>();
         let normal = (of_local * mean).normalize_or(geometric);
         let normal = if normal.dot(geometric) < 0.0 { geometric } else { normal };
-        let back = self.scene.materials[instance.material].double_sided && index % 2 == 1;
-        let side = if back { -1.0 } else { 1.0 };
+        let is_back = back && self.scene.materials[instance.material].double_sided;
+        let side = if is_back { -1.0 } else { 1.0 };
         (geometric != Vec3::ZERO).then(|| Place {
             position: weights.x * a + weights.y * b + weights.z * c,
             normal: side * normal,

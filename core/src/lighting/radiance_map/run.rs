@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::bake::{Asked, Baker, Block};
+use super::density::Density;
 use super::map::Map;
 use super::method::RadianceMap;
-use super::settings::{PARAMS, asked, asked_directions, gathered};
+use super::settings::{PARAMS, asked, asked_directions, coarse, gathered};
 use super::shards::{self, Shard, ShardAbout};
 use crate::job::Handle;
 use crate::lighting::prepared::Origin;
@@ -20,6 +21,8 @@ const AT_ONCE: usize = 4;
 
 /// Share of a job that baking a map to gather from takes, about.
 const BEFORE: f32 = 0.2;
+/// The same of the coarse map.
+const COARSE: f32 = 0.05;
 
 /// A whole bake.
 pub(super) fn prepared(world: &World, settings: &Settings, job: &Handle) -> Result<Prepared, MethodError> {
@@ -40,14 +43,22 @@ pub fn run(
     let directions = asked_directions(settings);
     let asked: Asked = asked(settings);
     let baker = Baker::new(world, &directions, asked)?;
+    let coarse = match coarse(settings) {
+        Some((settings, share)) => Some((prepared(world, &settings, &job.part(0.0, COARSE))?, share)),
+        None => None,
+    };
+    let job = &job.part(if coarse.is_some() { COARSE } else { 0.0 }, 1.0);
     let before = match gathered(settings) {
         Some(settings) => Some(prepared(world, &settings, &job.part(0.0, BEFORE))?),
         None => None,
     };
     let job = &job.part(if before.is_some() { BEFORE } else { 0.0 }, 1.0);
-    // As it was baked, whatever frames make of it.
+    // As they were baked, whatever frames make of them.
     let plain = Settings::new(PARAMS);
-    let baker = baker.gathering(before.as_ref().and_then(|prepared| Map::of(prepared, &plain)));
+    let mut baker = baker.gathering(before.as_ref().and_then(|prepared| Map::of(prepared, &plain)));
+    if let Some((prepared, share)) = &coarse {
+        baker = baker.denser(Map::of(prepared, &plain).and_then(Density::new), *share);
+    }
     let origin = Origin::of(&RadianceMap, settings, world.scene());
     let about = ShardAbout { origin, shard, area: baker.area(), blocks: baker.blocks() };
     let mut done = begun.filter(|begun| begun.about == about).unwrap_or(Shard { about, blocks: Vec::new() });

@@ -37,7 +37,7 @@ fn bytes(bake: &Bake, folder: &Folder) -> Vec<u8> {
 
 #[test]
 fn shards_in_any_order_are_the_whole_bit_by_bit() {
-    let (world, settings, folder) = (world(), settings(&[]), Folder::new());
+    let (world, settings, folder) = (world(), settings(&[("denser", "0.4")]), Folder::new());
     let alone = baked(&world, &settings, [1, 1]);
     let expected = bytes(&whole(&alone.about, &alone.blocks).unwrap(), &folder);
     for of in [1, 3, 8] {

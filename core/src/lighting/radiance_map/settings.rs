@@ -51,6 +51,15 @@ const GATHER: ParamSpec = ParamSpec {
     affects: Affects::Prepare,
 };
 
+const DENSER: ParamSpec = ParamSpec {
+    key: "denser",
+    label: "Denser",
+    unit: "share",
+    kind: ParamKind::Number { min: 0.0, max: 0.9, default: 0.0 },
+    help: "Share of the points that lie where light varies, as a coarse map tells that is baked before; the others are spread by area.",
+    affects: Affects::Prepare,
+};
+
 const SPREAD: ParamSpec = ParamSpec {
     key: "spread",
     label: "Spread",
@@ -156,6 +165,7 @@ pub const PARAMS: &[ParamSpec] = &[
     DIRECTIONS,
     PATHS,
     GATHER,
+    DENSER,
     SPREAD,
     SEED,
     LOBE_SAMPLES,
@@ -196,12 +206,31 @@ pub(super) fn gathered(settings: &Settings) -> Option<Settings> {
     let times = settings.whole(&GATHER);
     let before = [
         (&GATHER, times.checked_sub(1)?),
+        (&DENSER, 0),
         (&POINTS, settings.whole(&POINTS).div_ceil(4).max(FEWEST_POINTS)),
         (&SEED, settings.whole(&SEED).wrapping_add(OTHER_SEED)),
     ];
     let mut settings = settings.clone();
     before.into_iter().try_for_each(|(spec, value)| settings.set(spec.key, &value.to_string())).ok()?;
     Some(settings)
+}
+
+/// Settings of the coarse map that tells where places lie, and the share of these; `None` where all are spread by area. Its seed is the same for all, so
+/// that bakes of several seeds are of the same places.
+pub(super) fn coarse(settings: &Settings) -> Option<(Settings, f32)> {
+    let share = settings.number(&DENSER);
+    if share <= 0.0 {
+        return None;
+    }
+    let values = [
+        (&POINTS, settings.whole(&POINTS).div_ceil(8).max(FEWEST_POINTS)),
+        (&DIRECTIONS, DRAFT_DIRECTIONS),
+        (&PATHS, 4),
+        (&GATHER, 0),
+    ];
+    let mut coarse = Settings::new(PARAMS);
+    values.into_iter().try_for_each(|(spec, value)| coarse.set(spec.key, &value.to_string())).ok()?;
+    Some((coarse, share))
 }
 
 /// What is baked, from settings made of [`PARAMS`].

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use burnish_core::lighting::Prepared;
 use burnish_core::lighting::radiance_map::{self, Grid, LISTS, Look, MetSurface, Part};
 use burnish_core::scene::Scene;
-use glam::{UVec3, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 
 use crate::device::Gpu;
 use crate::error::RenderError;
@@ -34,17 +34,10 @@ impl GpuMap {
         let unfit = || RenderError::Preparation("it holds no radiance map; prepare it again".into());
         let directions = radiance_map::baked_directions(prepared).ok_or_else(unfit)?;
         let (positions, normals) = (prepared.floats("positions"), prepared.floats("normals"));
-        let (starts, neighbours) = (prepared.whole("starts"), prepared.whole("neighbours"));
-        let size = prepared.whole("cells");
+        let neighbours = prepared.whole("neighbours");
+        let (grid, starts) = Grid::of(prepared).ok_or_else(unfit)?;
         let places = positions.len() / 3;
-        let [x, y, z] = *size else { return Err(unfit()) };
-        let (low, edge) = (prepared.vector("grid", 0), prepared.vector("grid", 1).x);
-        let grid = Grid { low, edge, size: UVec3::new(x, y, z) };
-        let is_whole = places > 0
-            && normals.len() == positions.len()
-            && neighbours.len() == radiance_map::SET * places
-            && grid.is_sound()
-            && starts.len() == grid.cells() + 1;
+        let is_whole = places > 0 && normals.len() == positions.len() && neighbours.len() == radiance_map::SET * places;
         if !is_whole || directions.len() > MOST_DIRECTIONS {
             return Err(unfit());
         }
@@ -82,8 +75,8 @@ impl GpuMap {
         place(&[0]);
         check_size(gpu, "radiance map", 4 * words.len() as u64)?;
         let shape = MapData {
-            low,
-            edge,
+            low: grid.low,
+            edge: grid.edge,
             size: grid.size,
             places: places as u32,
             directions: directions.len() as u32,
@@ -124,12 +117,14 @@ impl GpuMap {
             [(look.smooth, MAP_SMOOTH), (look.filter.box_shaped, MAP_BOX), (look.filter.unguarded, MAP_UNGUARDED)];
         let flags = flags.into_iter().filter(|(on, _)| *on).map(|(_, flag)| flag).sum::<u32>();
         let [environment_color, lamps_color, glow_color] = look.strengths;
+        let is_on = Vec3::from(look.strengths.map(|color| if color == Vec3::ZERO { 0.0 } else { 1.0 }));
         MapData {
             flags: self.shape.flags | flags,
             lobes: look.lobes,
             environment_color,
             lamps_color,
             glow_color,
+            scales: is_on * self.shape.scales,
             below: look.below,
             part: match look.part {
                 Part::All => MAP_ALL,

@@ -9,6 +9,7 @@ use burnish_core::file::write_atomic;
 use burnish_core::job::Handle;
 use burnish_core::lighting::Method;
 use burnish_core::lighting::impostor::{self, HitErrors, Impostor, Solver};
+use burnish_core::measure::median;
 use burnish_core::param::Settings;
 use burnish_core::reference::{Options, View as Eyes, World};
 use burnish_render::{Gpu, Lighting, Passes, Renderer, View};
@@ -201,10 +202,7 @@ impl Timer {
             times[0].push(self.own.time_frame(&view).map_err(Failure::resources)?);
             times[1].push(self.classical.time_frame(&view).map_err(Failure::resources)?);
         }
-        Ok(times.map(|mut times| {
-            times.sort_by(f64::total_cmp);
-            times[FRAMES / 2]
-        }))
+        Ok(times.map(|mut times| median(&mut times)))
     }
 }
 

@@ -6,10 +6,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use burnish_core::job::Handle;
-use burnish_core::lighting::bakes::Bake;
-use burnish_core::lighting::prepared::{Origin, Prepared};
 use burnish_core::lighting::radiance_map::{self, FrameTimes, Part, RadianceMap, frame_times, in_floats};
-use burnish_core::lighting::{Method, MethodId};
+use burnish_core::lighting::{Method, MethodId, Prepared};
+use burnish_core::measure::median;
 use burnish_core::param::Settings;
 use burnish_core::reference::{Options, View as Eyes, World};
 use burnish_core::scene::{Camera, Scene};
@@ -93,14 +92,7 @@ pub fn run(args: Args, out: &mut dyn Write, err: &mut dyn Write) -> Result<Exit,
     let (camera, scene) = (opened.camera(args.size), Arc::new(opened.scene));
     let world = World::new(&scene, Options::new(&settings));
     let prepared = match &args.prepared {
-        Some(path) => {
-            let bake = Bake::read(path).map_err(Failure::resources)?;
-            let origin = Origin::of(&RadianceMap, &settings, &scene);
-            if let Some(notice) = bake.fits(path, &origin).map_err(Failure::resources)? {
-                writeln!(err, "burnish: notice: {}", printable(&notice))?;
-            }
-            bake.prepared
-        }
+        Some(path) => super::render::prepared_in(path, (&RadianceMap, &settings), &scene, err)?,
         None => RadianceMap.prepare(&world, &settings, &Handle::default()).map_err(Failure::resources)?,
     };
     let unfit = || Failure::resources("the bake holds no radiance map; bake it anew");
@@ -152,10 +144,7 @@ fn on_device(
             times.push(secs.map_err(Failure::resources)?);
         }
     }
-    let [nothing, query, search, filter, frame, boxed, floats] = times.map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    });
+    let [nothing, query, search, filter, frame, boxed, floats] = times.map(|mut times| median(&mut times));
     Ok(FrameTimes {
         frame,
         query: query - nothing,

@@ -12,7 +12,7 @@ pub mod view;
 
 pub use errors::{Errors, Mask, errors, interior, relative_square};
 pub use flip::{FlipError, PIXELS_PER_DEGREE, flip};
-pub use times::evaluation_times;
+pub use times::{evaluation_times, median};
 
 use glam::Vec3;
 

@@ -28,9 +28,11 @@ pub fn evaluation_times(curves: &[Fresnel], rounds: usize) -> Vec<f64> {
             times.push(start.elapsed().as_secs_f64() / (BATCH * BATCHES) as f64);
         }
     }
-    let median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    times.into_iter().map(median).collect()
+    times.iter_mut().map(|times| median(times)).collect()
+}
+
+/// The middle value, of an even number the upper one; not a number where there is none.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

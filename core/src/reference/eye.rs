@@ -215,11 +215,6 @@ impl SurfacePoint<'_> {
         !self.world.occluded(&Ray { origin, direction, t_max: distance * (1.0 - 1e-4) }, self.salt)
     }
 
-    /// Radiance of the sky from a direction (world, unit), whether it is seen or not.
-    pub fn sky(&self, direction: Vec3) -> Vec3 {
-        self.world.lights().sky(direction)
-    }
-
     /// Direct light of the lamps of all kinds, of one drawn by `random` and of those that a direction from the surface meets,
     /// with their shadows; and the rays that were cast.
     pub fn lamps(&self, random: [f32; 4]) -> (Vec3, u32) {

@@ -241,27 +241,35 @@ const MAP_NOTHING: u32 = 4u;
 // A baked radiance map in a list of words, and how it is looked up.
 struct MapData {
     low: vec3f,
+    // Of a cell of the grid, metres.
     edge: f32,
     size: vec3u,
     places: u32,
     directions: u32,
     reach: f32,
+    // MAP_ flags.
     flags: u32,
+    // Directions drawn from the surface.
     lobes: u32,
+    // Factor on the light of a group, and the word where that begins.
     environment_color: vec3f,
     environment: u32,
     lamps_color: vec3f,
     lamps: u32,
     glow_color: vec3f,
     glow: u32,
+    // From a number of each group to its radiance; 0 where it is dark or switched off.
     scales: vec3f,
+    // Width of the lobe below which rays are sent.
     below: f32,
+    // Words where things begin.
     starts: u32,
     neighbours: u32,
     positions: u32,
     normals: u32,
     drawn: u32,
     lists: u32,
+    // What is done of a lookup: MAP_ALL, or a part to be timed.
     part: u32,
     pad0: u32,
 }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use burnish_core::measure::median;
 use burnish_core::surface::fresnel::Fresnel;
 
 use crate::device::{Gpu, GpuError};
@@ -53,12 +54,7 @@ pub fn evaluation_times(gpu: &Gpu, curves: &[Fresnel]) -> Result<Vec<f64>, GpuEr
             }
         }
     }
-    Ok(times.into_iter().map(median).collect())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    Ok(times.iter_mut().map(|times| median(times)).collect())
 }
 
 /// A pipeline with its bindings.

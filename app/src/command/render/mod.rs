@@ -14,7 +14,7 @@ use burnish_core::document::ViewEntry;
 use burnish_core::file::{FileError, PictureFormat};
 use burnish_core::lighting::bakes::Bake;
 use burnish_core::lighting::prepared::Origin;
-use burnish_core::lighting::{self, Layer, Layers, Method, Store};
+use burnish_core::lighting::{self, Layer, Layers, Method, Prepared, Store};
 use burnish_core::param::{ParamSpec, Settings};
 use burnish_core::scene::Scene;
 use glam::UVec2;
@@ -189,12 +189,23 @@ impl Sources<'_> {
         let store = folder.map_or_else(Store::none, |folder| Store::within(&folder));
         let Some(path) = prepared else { return Ok(store) };
         let Layer { method, settings, .. } = layer;
-        let refused = |error: FileError| Failure { exit: Exit::Input, messages: vec![error.to_string()] };
-        let bake = Bake::read(path).map_err(refused)?;
-        let notice = bake.fits(path, &Origin::of(*method, settings, scene)).map_err(refused)?;
-        tell(err, notice.as_slice())?;
-        Ok(store.giving(method.info().id, Arc::new(bake.prepared)))
+        let prepared = prepared_in(path, (*method, settings), scene, err)?;
+        Ok(store.giving(method.info().id, Arc::new(prepared)))
     }
+}
+
+/// What a bake holds for a method. Tells where that is of another state of the scene, and refuses what cannot be used.
+pub fn prepared_in(
+    path: &Path,
+    (method, settings): (&dyn Method, &Settings),
+    scene: &Scene,
+    err: &mut dyn Write,
+) -> Result<Prepared, Failure> {
+    let refused = |error: FileError| Failure { exit: Exit::Input, messages: vec![error.to_string()] };
+    let bake = Bake::read(path).map_err(refused)?;
+    let notice = bake.fits(path, &Origin::of(method, settings, scene)).map_err(refused)?;
+    tell(err, notice.as_slice())?;
+    Ok(bake.prepared)
 }
 
 /// Applies `--set`.

@@ -109,12 +109,6 @@ impl<'a> Baker<'a> {
         }
     }
 
-    /// What arrives at a place.
-    fn arriving(&self, place: &Place, number: u32) -> Light {
-        let Baker { around, cells, gathered, asked, .. } = self;
-        arriving((around, gathered.as_ref()), cells, place, number, *asked)
-    }
-
     /// Blocks in all.
     pub fn blocks(&self) -> u32 {
         self.asked.points.div_ceil(BLOCK)
@@ -144,7 +138,7 @@ impl<'a> Baker<'a> {
                 return Err(MethodError::Cancelled);
             }
             let Some(place) = self.place(number) else { continue };
-            let light = self.arriving(&place, number);
+            let light = arriving(self, &place, number);
             block.positions.extend(place.position.to_array());
             block.normals.extend(place.normal.to_array());
             block.rays = block.rays.saturating_add(light.rays);
@@ -194,7 +188,7 @@ pub fn age(then: &World, now: &World, directions: &Directions, seed: u32) -> Opt
     let of = |number: u32| {
         let mut lit = bakers.iter().filter_map(|baker| {
             let place = baker.place(number)?;
-            let light = baker.arriving(&place, number);
+            let light = arriving(baker, &place, number);
             (light.inside < INSIDE).then_some(light.halves.map(f64::from))
         });
         let ([a, b], [new_a, new_b]) = (lit.next()?, lit.next()?);
@@ -312,14 +306,9 @@ impl<'a> Cells<'a> {
 
 /// Mean radiance that arrives at a place in each cell, over the part of it above the surface, by [`GROUPS`]. Cells below have that of the nearest cell: they
 /// are asked for where the surface bends.
-fn arriving(
-    (world, gathered): (&World, Option<&Map<'_>>),
-    cells: &Cells<'_>,
-    place: &Place,
-    index: u32,
-    asked: Asked,
-) -> Light {
-    let Cells { directions, around } = cells;
+fn arriving(baker: &Baker<'_>, place: &Place, index: u32) -> Light {
+    let Baker { around: world, cells: Cells { directions, around }, gathered, asked, .. } = baker;
+    let gathered = gathered.as_ref();
     let count = directions.len();
     let mut light: [Vec<Vec3>; 3] = std::array::from_fn(|_| vec![Vec3::ZERO; count]);
     // Solid angle of the part above the surface.

@@ -27,13 +27,7 @@ impl<'a> Density<'a> {
         // A mean of neighbours has less noise.
         let irradiance = |place: u32| {
             let light = map.mean(set(place), [1.0 / SET as f32; SET]);
-            let normal = map.near.normal(place);
-            let cells = light.iter().enumerate();
-            cells
-                .map(|(k, l)| {
-                    map.directions.solid_angle(k) * map.directions.get(k).dot(normal).max(0.0) * l.element_sum()
-                })
-                .sum()
+            map.directions.irradiance(&light, map.near.normal(place))
         };
         let all: Vec<f32> = places.clone().map(irradiance).collect();
         let of_set = |place: u32| set(place).iter().map(|other| all[*other as usize]);
@@ -110,17 +104,9 @@ mod tests {
         println!("{even} {dense}, {beside} beside");
         assert!(dense > 1.4 * even && beside < 20, "{even} {dense} {beside}");
         // Of even light nothing is known.
-        assert!(
-            Density::new(
-                Map::of(&prepared, &{
-                    ["environment-strength", "lamps-strength", "glow-strength"]
-                        .iter()
-                        .for_each(|key| settings.set(key, "0").unwrap());
-                    settings.clone()
-                })
-                .unwrap()
-            )
-            .is_none()
-        );
+        for key in ["environment-strength", "lamps-strength", "glow-strength"] {
+            settings.set(key, "0").unwrap();
+        }
+        assert!(Density::new(Map::of(&prepared, &settings).unwrap()).is_none());
     }
 }

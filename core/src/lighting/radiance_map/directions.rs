@@ -112,6 +112,12 @@ impl Directions {
         self.solid_angles[k]
     }
 
+    /// Irradiance of a surface by the light in each cell, red, green and blue together.
+    pub fn irradiance(&self, light: &[Vec3], normal: Vec3) -> f32 {
+        let cells = light.iter().zip(&self.list).zip(&self.solid_angles);
+        cells.map(|((light, own), solid_angle)| solid_angle * own.dot(normal).max(0.0) * light.element_sum()).sum()
+    }
+
     /// Cosine of the angle beyond which a direction says nothing of another.
     pub fn reach(&self) -> f32 {
         self.reach

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{UVec3, Vec3};
+use glam::Vec3;
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 
@@ -34,14 +34,10 @@ impl<'a> Map<'a> {
     pub fn of(prepared: &'a Prepared, settings: &Settings) -> Option<Map<'a>> {
         let directions = baked_directions(prepared)?;
         let (positions, normals) = (prepared.floats("positions"), prepared.floats("normals"));
-        let size = UVec3::from_slice(prepared.whole("cells").get(..3)?);
-        let grid = Grid { low: prepared.vector("grid", 0), edge: prepared.vector("grid", 1).x, size };
-        let (starts, neighbours) = (prepared.whole("starts"), prepared.whole("neighbours"));
+        let (grid, starts) = Grid::of(prepared)?;
+        let neighbours = prepared.whole("neighbours");
         let places = positions.len() / 3;
         if places == 0 || normals.len() != positions.len() || neighbours.len() != SET * places {
-            return None;
-        }
-        if !grid.is_sound() || starts.len() != grid.cells() + 1 {
             return None;
         }
         let look = Look::new(settings);
@@ -80,9 +76,8 @@ impl<'a> Map<'a> {
         let numbers = 3 * self.directions.len();
         let mut light = vec![Vec3::ZERO; self.directions.len()];
         let mut wide = vec![0.0f32; numbers];
-        let is_there = |(weight, place): &(f32, &u32)| *weight > 0.0 && (**place as usize) < self.near.len();
-        for (weight, place) in weights.into_iter().zip(set).filter(is_there) {
-            let of_place = numbers * *place as usize..numbers * (*place as usize + 1);
+        for (place, weight) in self.counted(set, weights) {
+            let of_place = numbers * place..numbers * (place + 1);
             for (own, factor) in self.groups.iter().flatten().filter(|(_, factor)| *factor != Vec3::ZERO) {
                 let own = match own {
                     Light::Floats(floats) => &floats[of_place.clone()],
@@ -100,6 +95,13 @@ impl<'a> Map<'a> {
         light
     }
 
+    /// Places of a set that count, with their weights: a file may name some that are not there.
+    fn counted(&self, set: &[u32], weights: [f32; SET]) -> impl Iterator<Item = (usize, f32)> {
+        let places = self.near.len();
+        let each = set.iter().map(|place| *place as usize).zip(weights);
+        each.filter(move |(place, weight)| *weight > 0.0 && *place < places)
+    }
+
     /// Radiance that arrives at a point in the cell of a direction, by [`GROUPS`].
     pub fn apart(&self, position: Vec3, normal: Vec3, direction: Vec3) -> [Vec3; 3] {
         let Some(set) = self.near.set(position, normal) else { return [Vec3::ZERO; 3] };
@@ -107,16 +109,14 @@ impl<'a> Map<'a> {
         let weights = near::weights(&self.near, set, position, normal, self.look.filter);
         self.groups.each_ref().map(|group| {
             let Some((light, factor)) = group else { return Vec3::ZERO };
-            let of_place = |place: u32| {
-                let first = 3 * (count * place as usize + k);
+            let of_place = |place: usize| {
+                let first = 3 * (count * place + k);
                 Vec3::from_array(match light {
                     Light::Halves(halves) => std::array::from_fn(|i| halves[first + i].to_f32()),
                     Light::Floats(floats) => std::array::from_fn(|i| floats[first + i]),
                 })
             };
-            let is_there = |(place, weight): &(&u32, f32)| *weight > 0.0 && (**place as usize) < self.near.len();
-            let sum = set.iter().zip(weights).filter(is_there).map(|(place, w)| w * of_place(*place));
-            *factor * sum.sum::<Vec3>()
+            *factor * self.counted(set, weights).map(|(place, weight)| weight * of_place(place)).sum::<Vec3>()
         })
     }
 

@@ -124,14 +124,7 @@ fn gathered_light_is_that_of_whole_paths_with_less_noise() {
         let prepared = baked(&world, &settings);
         let map = Map::of(&prepared, &settings).unwrap();
         let floor = (0..400).map(|i| Vec3::new(0.09 * (i % 20) as f32 - 0.85, -0.999, 0.09 * (i / 20) as f32 - 0.85));
-        let light = |at: Vec3| {
-            let known = map.arriving(at, Vec3::Y);
-            let cells = known.iter().enumerate();
-            let of = |(k, light): (usize, &Vec3)| {
-                map.directions.solid_angle(k) * map.directions.get(k).y.max(0.0) * light.element_sum()
-            };
-            cells.map(of).sum::<f32>()
-        };
+        let light = |at: Vec3| map.directions.irradiance(&map.arriving(at, Vec3::Y), Vec3::Y);
         floor.map(light).collect::<Vec<f32>>()
     };
     let sum = |light: &[f32]| light.iter().sum::<f32>();

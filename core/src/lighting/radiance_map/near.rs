@@ -3,6 +3,8 @@
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 
+use crate::lighting::Prepared;
+
 /// Places in a set of neighbours, the place itself among them.
 pub const SET: usize = 8;
 /// Least cosine between the normals of places that light the same surface.
@@ -35,13 +37,17 @@ impl Grid {
         Grid { low, edge, size }
     }
 
-    /// It has cells, and not more than grids have.
-    pub fn is_sound(&self) -> bool {
-        self.edge > 0.0 && self.size.min_element() > 0 && self.size.max_element() <= MOST_CELLS
+    /// That of a map with its starts, as they are stored; `None` where there is none, or numbers do not belong together.
+    pub fn of(prepared: &Prepared) -> Option<(Grid, &[u32])> {
+        let (size, starts) = (prepared.whole("cells"), prepared.whole("starts"));
+        let size = UVec3::from_array(size.try_into().ok()?);
+        let grid = Grid { low: prepared.vector("grid", 0), edge: prepared.vector("grid", 1).x, size };
+        let is_sound = grid.edge > 0.0 && size.min_element() > 0 && size.max_element() <= MOST_CELLS;
+        (is_sound && starts.len() == grid.cells() + 1).then_some((grid, starts))
     }
 
-    /// Cells in all, of a sound one.
-    pub fn cells(&self) -> usize {
+    /// Cells in all.
+    fn cells(&self) -> usize {
         self.size.element_product() as usize
     }
 

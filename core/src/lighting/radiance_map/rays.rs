@@ -20,7 +20,7 @@ pub(super) fn traced(map: &Map<'_>, point: &SurfacePoint<'_>, effort: Effort, ra
     let found = |direction: Vec3, number: u32| {
         let eye = point.toward(direction, pcg(random[3].to_bits().wrapping_add(number)));
         match eye.point() {
-            None => Found { light: map.look.strengths[0] * point.sky(direction), sky: world.sky_density(direction) },
+            None => Found { light: map.look.strengths[0] * eye.sky(direction), sky: world.sky_density(direction) },
             Some(met) if met.is_behind() => Found::NOTHING,
             Some(met) => {
                 let again = numbers(random, number + 977);

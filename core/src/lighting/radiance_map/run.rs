@@ -43,6 +43,13 @@ pub fn run(
     let directions = asked_directions(settings);
     let asked: Asked = asked(settings);
     let baker = Baker::new(world, &directions, asked)?;
+    let origin = Origin::of(&RadianceMap, settings, world.scene());
+    let about = ShardAbout { origin, shard, area: baker.area(), blocks: baker.blocks() };
+    let mut done = begun.filter(|begun| begun.about == about).unwrap_or(Shard { about, blocks: Vec::new() });
+    let missing = done.missing();
+    if missing.is_empty() {
+        return Ok(done);
+    }
     let coarse = match coarse(settings) {
         Some((settings, share)) => Some((prepared(world, &settings, &job.part(0.0, COARSE))?, share)),
         None => None,
@@ -59,10 +66,6 @@ pub fn run(
     if let Some((prepared, share)) = &coarse {
         baker = baker.denser(Map::of(prepared, &plain).and_then(Density::new), *share);
     }
-    let origin = Origin::of(&RadianceMap, settings, world.scene());
-    let about = ShardAbout { origin, shard, area: baker.area(), blocks: baker.blocks() };
-    let mut done = begun.filter(|begun| begun.about == about).unwrap_or(Shard { about, blocks: Vec::new() });
-    let missing = done.missing();
     let all = done.about.own().count().max(1);
     let finished = AtomicUsize::new(all - missing.len().min(all));
     for some in missing.chunks(AT_ONCE * rayon::current_num_threads().max(1)) {

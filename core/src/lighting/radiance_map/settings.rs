@@ -192,11 +192,15 @@ pub(super) const DRAFT_DIRECTIONS: u32 = 32;
 
 /// Settings for a draft, in a part of a second.
 pub(super) fn draft(settings: &Settings) -> Result<Settings, ParamError> {
-    let mut draft = settings.clone();
-    for (spec, most) in [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1), (&GATHER, 0)] {
-        draft.set(spec.key, &settings.whole(spec).min(most).to_string())?;
-    }
-    Ok(draft)
+    let most = [(&POINTS, DRAFT_POINTS), (&DIRECTIONS, DRAFT_DIRECTIONS), (&PATHS, 1), (&GATHER, 0)];
+    changed(settings, most.map(|(spec, most)| (spec, settings.whole(spec).min(most))))
+}
+
+/// The same with some values.
+fn changed<const N: usize>(settings: &Settings, values: [(&ParamSpec, u32); N]) -> Result<Settings, ParamError> {
+    let mut settings = settings.clone();
+    values.into_iter().try_for_each(|(spec, value)| settings.set(spec.key, &value.to_string()))?;
+    Ok(settings)
 }
 
 /// Settings of the map that a bake gathers from; `None` for one that gathers nothing.
@@ -210,9 +214,7 @@ pub(super) fn gathered(settings: &Settings) -> Option<Settings> {
         (&POINTS, settings.whole(&POINTS).div_ceil(4).max(FEWEST_POINTS)),
         (&SEED, settings.whole(&SEED).wrapping_add(OTHER_SEED)),
     ];
-    let mut settings = settings.clone();
-    before.into_iter().try_for_each(|(spec, value)| settings.set(spec.key, &value.to_string())).ok()?;
-    Some(settings)
+    changed(settings, before).ok()
 }
 
 /// Settings of the coarse map that tells where places lie, and the share of these; `None` where all are spread by area. Its seed is the same for all, so
@@ -228,9 +230,7 @@ pub(super) fn coarse(settings: &Settings) -> Option<(Settings, f32)> {
         (&PATHS, 4),
         (&GATHER, 0),
     ];
-    let mut coarse = Settings::new(PARAMS);
-    values.into_iter().try_for_each(|(spec, value)| coarse.set(spec.key, &value.to_string())).ok()?;
-    Some((coarse, share))
+    Some((changed(&Settings::new(PARAMS), values).ok()?, share))
 }
 
 /// What is baked, from settings made of [`PARAMS`].

@@ -10,6 +10,7 @@ use super::map::{Map, in_floats};
 use super::method::{Effort, RadianceMap, reflected};
 use super::near::{Filter, Near, SET, weights};
 use crate::lighting::{Drawing, Prepared};
+use crate::measure::median;
 use crate::param::Settings;
 use crate::reference::{Eye, SurfacePoint, View, World};
 
@@ -94,11 +95,7 @@ pub fn frame_times(
         }
         times[stages.len()].push(of_pixels(&|pixel| drawing.sample(view, pixel, 0).radiance.x));
     }
-    let median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    let medians: Vec<f64> = times.into_iter().map(median).collect();
+    let medians: Vec<f64> = times.iter_mut().map(|times| median(times)).collect();
     let [points, one, eight, hat, boxed, floats, shaded, frame] = medians.try_into().ok()?;
     Some(FrameTimes {
         frame,

@@ -2,7 +2,7 @@
 
 use super::{BenchError, Cache, FrameTimer, Frames, Record, Region, Rig, Shot, Tools, Truth};
 use crate::lighting::method::MethodId;
-use crate::measure::errors;
+use crate::measure::{errors, median};
 use crate::param::Settings;
 
 /// Seconds of frames of a candidate that are enough, within [`ROUNDS`].
@@ -125,12 +125,6 @@ fn open(timer: &mut dyn FrameTimer, index: usize, shot: &Shot, settings: &Settin
     let mut frames = timer.open(shot, settings)?;
     frames.frame()?;
     Ok(Entry { index, frames, secs: Vec::new(), calibration: Vec::new() })
-}
-
-/// The middle value, of an even number the upper one.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 impl Candidate {

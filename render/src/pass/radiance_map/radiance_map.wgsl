@@ -90,7 +90,7 @@ fn map_numbers(first: u32, number: u32) -> vec3f {
 fn radiance_map_light(place: u32, k: u32) -> vec3f {
     let number = place * given.directions + k;
     var light = vec3f(0.0);
-    // Those of no scale are dark.
+    // Those of no scale are dark, or switched off.
     if given.scales.x > 0.0 {
         light += given.scales.x * given.environment_color * map_numbers(given.environment, number);
     }

@@ -77,3 +77,23 @@ pub fn a_picture_is_lit_by_what_was_baked() {
     let told = burnish(&["render", SCENE, "--method", "impostor", "--prepared", text(&one), "--out", "x.exr"]);
     told.failed(INPUT, &["radiance-map, not impostor"]);
 }
+
+pub fn what_the_parts_of_a_frame_cost_is_told() {
+    let bake_file = scratch_folder("map-times").join("room.bake");
+    bake(&bake_file, &[]);
+    let times = |scene: &str| {
+        let args =
+            ["map-times", scene, "--prepared", text(&bake_file), "--size", "32x24", "--processor", "--rounds", "1"];
+        burnish(&[&args[..], &["--json"]].concat())
+    };
+    let told = times(SCENE).succeeded();
+    assert_eq!(told.err, "");
+    let rows: Value = serde_json::from_str(&told.out).expect("JSON");
+    let [row] = rows.as_array().expect("rows").as_slice() else { panic!("{rows}") };
+    let number = |key: &str| row[key].as_f64().expect("a number");
+    assert!(number("frame_ms") > 0.0 && row["device"].as_str().is_some_and(|device| device.contains("processor")));
+    let parts = ["query", "filter", "shading", "rest"].map(number);
+    assert!((parts.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{rows}");
+    // Of other geometry.
+    times("gallery:ring").failed(INPUT, &["room.bake", "geometry"]);
+}

@@ -73,6 +73,7 @@ fn free_of_the_gpu() -> Vec<Trial> {
         trial("what cannot be measured is told", &[], chart::what_cannot_be_measured_is_told),
         trial("shards are merged to the bytes of a whole", &[], baking::shards_are_merged_to_the_bytes_of_a_whole),
         trial("a picture is lit by what was baked", &[], baking::a_picture_is_lit_by_what_was_baked),
+        trial("what the parts of a frame cost is told", &[], baking::what_the_parts_of_a_frame_cost_is_told),
         trial("the page of methods is that of the program", &[], the_page_of_methods),
         trial("threads do not change a traced file", &[], reference::threads_do_not_change_a_file),
         trial(
